@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/atomic_file.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -74,22 +75,18 @@ TEST_F(CommandBeam, Plots) {
     const CommandResult plotted = beam({kLed, "--plot", "led.svg"});
     ASSERT_EQ(plotted.status, 0) << plotted.err;
     const std::string svg = text_of("led.svg");
-    EXPECT_NE(svg.find("angle off the axis"), std::string::npos);
-    EXPECT_NE(svg.find("as thrown"), std::string::npos);
+    EXPECT_TRUE(has(svg, "angle off the axis"));
+    EXPECT_TRUE(has(svg, "as thrown"));
 }
 
 TEST_F(CommandBeam, NamesWhatThereIs) {
     const std::string rig = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml";
     const CommandResult other = beam({rig + ":flash"});
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("found no strobe with the beam 'flash'; allowed: led"),
-              std::string::npos)
-        << other.err;
+    EXPECT_TRUE(has(other.err, "found no strobe with the beam 'flash'; allowed: led"));
     const CommandResult none = beam({rig});
     EXPECT_EQ(none.status, 2);
-    EXPECT_NE(none.err.find("allowed: RIG:NAME, a beam of a rig, or a .ies, .ldt or .csv file"),
-              std::string::npos)
-        << none.err;
+    EXPECT_TRUE(has(none.err, "allowed: RIG:NAME, a beam of a rig, or a .ies, .ldt or .csv file"));
     EXPECT_EQ(beam({"missing.ies"}).status, 2);
 }
 

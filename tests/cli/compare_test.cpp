@@ -3,6 +3,7 @@
 // aphotic compare with --scale and --report, as a user runs it.
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/page.h"
 
 #include <fmt/format.h>
@@ -139,7 +140,7 @@ TEST_F(CommandCompare, RefusesAScaleThatIsNone) {
     write("b.exr", kReference);
     const CommandResult negative = compare("--scale");
     EXPECT_EQ(negative.status, 2);
-    EXPECT_NE(negative.err.find("positive"), std::string::npos) << negative.err;
+    EXPECT_TRUE(has(negative.err, "positive"));
     EXPECT_EQ(compare("--scale=twice").status, 2);
 }
 

@@ -2,6 +2,7 @@
 //
 // Completion in the shells themselves, held against --help.
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -169,7 +170,7 @@ TEST_F(Completion, OfAnotherShellIsRefused) {
     const CommandResult run = aphotic("--completion tcsh");
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(run.out, "");
-    EXPECT_NE(run.err.find("tcsh not in {bash,zsh,fish}"), std::string::npos) << run.err;
+    EXPECT_TRUE(has(run.err, "tcsh not in {bash,zsh,fish}"));
 }
 
 }  // namespace

@@ -323,23 +323,6 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
 }
 
-// A map that lies elsewhere than it says, and one that no image is of.
-TEST_F(CorrectCommand, AMapOfAnotherWindowOrOfAbsurdSizeIsRefused) {
-    take("0.tif", {2.0, 0.0, 0.0});
-    const auto refused = [&](const std::string& map) {
-        write_file(path("map.exr"), map);
-        const CommandResult run = aphotic("correct raw --map map.exr -o out --bayer GRBG");
-        EXPECT_EQ(run.status, kBadInput) << run.err;
-        return run.err;
-    };
-    EXPECT_TRUE(
-        has(refused(exr_of_windows({2, 1, kWidth, kHeight}, {0, 0, kWidth + 4, kHeight + 3})),
-            "its data window, 48 x 36 from 2, 1, is not its display window, 52 x 39 "
-            "from 0, 0; allowed: both alike"));
-    const ExrSides large{0, 0, 8000, 8000};
-    EXPECT_TRUE(has(refused(exr_of_windows(large, large)), "map.exr: "));
-}
-
 // A fifth of the images cannot be read.
 TEST_F(CorrectCommand, EndsWellWhenNoMoreAreSkippedThanAllowed) {
     take_survey();
@@ -646,73 +629,28 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     EXPECT_EQ(told(lines_, "--white-level 65535"), "white-level");
 }
 
-// The same poses as heights with the images' names, as heights over time, and in tags: the same
-// images, up to the digits of the numbers in between.
-TEST_F(CorrectCommand, TheSameNavigationInOtherFormsCorrectsAlike) {
-    constexpr double kDigits = 1e-5;  // as many digits as the numbers below have, and floats
-    const std::vector<std::string> names{"20240309.120000000.1",
-                                         "20240309.120001000.2",
-                                         "20240309.120002000.3",
-                                         "20240309.120003000.4"};
-    const std::vector<Sled> sleds{{1.7, 5.0 * kDegree, 0.0},
-                                  {2.0, -3.0 * kDegree, 4.0 * kDegree},
-                                  {2.3, 0.0, 0.0},
-                                  {2.6, 7.0 * kDegree, -6.0 * kDegree}};
-    std::string heights = "relative_path,altitude [m],pitch [deg],roll [deg]\n";
-    std::string track = "timestamp,altitude_m,pitch_deg,roll_deg\n";
-    for (std::size_t i = 0; i < sleds.size(); ++i) {
-        const Sled& sled = sleds[i];
-        const std::string angles =
-            fmt::format("{:.4f},{:.4f}", sled.pitch_rad / kDegree, sled.roll_rad / kDegree);
-        const double height_m =
-            sled.altitude_m * std::cos(sled.pitch_rad) * std::cos(sled.roll_rad);
-        take(names[i] + ".tif", sled);
-        heights += fmt::format("dive/{}.tif,{:.9f},{}\n", names[i], height_m, angles);
-        // 2024-03-09 12:00:00 UTC, by a clock that is an hour ahead.
-        track += fmt::format("{},{:.9f},{}\n", 1709985600 + 3600 + i, height_m, angles);
-        const std::string tags =
-            fmt::format("lat=40.6,lon=-67.1,hdg=1.00,pitch={:.2f},roll={:.2f},alt0={:.2f},alt1=9",
-                        sled.pitch_rad / kDegree,
-                        sled.roll_rad / kDegree,
-                        sled.altitude_m);
-        const std::string image = read_text_file(path("raw/" + names[i] + ".tif"));
-        std::vector<std::uint16_t> mosaic;
-        for (std::size_t p = 0; p < kPixels; ++p) {  // little-endian, behind a header of 8 bytes
-            const auto byte = [&](std::size_t at) {
-                return static_cast<unsigned>(static_cast<unsigned char>(image[8 + 2 * p + at]));
-            };
-            mosaic.push_back(static_cast<std::uint16_t>(byte(0) + 256 * byte(1)));
-        }
-        write_file(path("raw/" + names[i] + ".tif"), tiff_of(mosaic, kWidth, kHeight, tags));
-    }
-    write_file(path("heights.csv"), heights);
-    write_file(path("track.csv"), track);
-    ASSERT_EQ(correct("--format exr").status, 0);
-    const auto expect_alike = [&](const Arguments& options, const std::string& words) {
-        fs::remove_all(path("other"));
-        const CommandResult run = correct("--format exr" + options, "other");
-        ASSERT_EQ(run.status, 0) << run.err;
-        EXPECT_TRUE(has(run.out, "  navigation: " + words));
-        for (const std::string& name : names) {
-            const auto wanted = exr_samples(path("out/" + name + ".exr"), {"R", "G", "B"});
-            const auto found = exr_samples(path("other/" + name + ".exr"), {"R", "G", "B"});
-            double most = 0.0;
-            for (std::size_t i = 0; i < wanted.size(); ++i)
-                most = std::max(most, static_cast<double>(std::abs(wanted[i] - found[i])));
-            EXPECT_LT(most, kDigits) << words << " " << name;
-        }
+// What each option makes of poses is NavigationFile's concern: here each reaches it, and is noted.
+// Other poses are another survey: the gain is taken anew, and every image done.
+TEST_F(CorrectCommand, OptionsOfNavigationReachItsReader) {
+    take("20240309.120000000.1.tif", {2.0, 0.0, 0.0});
+    write_file(path("track.csv"), "timestamp,alt,theta\n1709989200,1.5,0\n1709989203,1.5,0\n");
+    const auto corrected = [&](const Arguments& options) {
+        const CommandResult run = correct("--nav track.csv --json" + options);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return Json::parse(run.out);
     };
-    expect_alike("--nav heights.csv --altitude-is plumb", "oplab's CSV: image");
-    expect_alike("--nav track.csv --altitude-is nearest --clock-offset-s 3600",
-                 "Aphotic's CSV: time 'timestamp'");
-    expect_alike("--nav tags", "HabCam's tags: altitude_m 'alt0'");
-    const Json notes = Json::parse(text_of("other/correction.json"));
-    EXPECT_EQ(notes["settings"]["navigation"]["format"], "HabCam's tags");
-    EXPECT_EQ(notes["settings"]["navigation"]["altitude_is"], "axis");
-    // By another altimeter it is another survey: the gain is taken anew, and every image done.
-    const CommandResult other =
-        correct("--nav tags --format exr --columns altitude_m=alt1 --json", "other");
-    EXPECT_EQ(Json::parse(other.out)["kept"], 0);
+    const Arguments all =
+        "--columns altitude_m=alt,pitch_deg=theta --angles-in rad --altitude-is nearest "
+        "--clock-offset-s 3600 --longest-gap-s 4";
+    const Json noted = corrected(all + "--altitude-offset-m 0.5")["settings"]["navigation"];
+    EXPECT_EQ(noted["columns"]["altitude_m"], "alt");
+    EXPECT_EQ(noted["angles_in"], "rad");
+    EXPECT_EQ(noted["altitude_is"], "nearest");
+    EXPECT_EQ(noted["altitude_offset_m"], 0.5);
+    EXPECT_EQ(noted["clock_offset_s"], 3600.0);
+    EXPECT_EQ(noted["longest_gap_s"], 4.0);
+    EXPECT_EQ(corrected(all + "--altitude-offset-m 0.5")["kept"], 1);
+    EXPECT_EQ(corrected(all + "--altitude-offset-m 0.4")["kept"], 0);
 }
 
 // Whichever thread comes first.

@@ -2,6 +2,7 @@
 //
 // aphotic data, as a user runs it.
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,16 +27,16 @@ TEST_F(CommandData, ListsEveryTableOnALineOfItsOwn) {
          Arguments("pope-fry-1997 pure-2016 xenon-flash xenon-arc sand green-algae brown-algae "
                    "red-algae nikon-d5100 cie-1931 cie-d65 cie-led-b4 cie-led-b5 bk7 fused-silica "
                    "sapphire pmma polycarbonate quan-fry-1995")) {
-        EXPECT_NE(list.out.find(std::string("\n") + name + " "), std::string::npos) << name;
+        EXPECT_TRUE(has(list.out, std::string("\n") + name + " ")) << name;
     }
 }
 
 TEST_F(CommandData, ShowsATableWithItsSource) {
     const CommandResult table = data({"pope-fry-1997"});
     ASSERT_EQ(table.status, 0) << table.err;
-    EXPECT_NE(table.out.find("8710"), std::string::npos) << "the citation's first page";
-    EXPECT_NE(table.out.find("550"), std::string::npos);
-    EXPECT_NE(table.out.find("0.0565"), std::string::npos) << "Pope and Fry at 550 nm";
+    EXPECT_TRUE(has(table.out, "8710")) << "the citation's first page";
+    EXPECT_TRUE(has(table.out, "550"));
+    EXPECT_TRUE(has(table.out, "0.0565")) << "Pope and Fry at 550 nm";
 }
 
 // What --csv prints is itself a table that a rig can name.
@@ -47,7 +48,7 @@ TEST_F(CommandData, CsvCanBeGivenBack) {
     write_file(path("lamp.csv"), csv.out);
     const CommandResult checked = data({"lamp.csv"});
     EXPECT_EQ(checked.status, 0) << checked.err;
-    EXPECT_NE(checked.out.find("lamp spectrum"), std::string::npos) << checked.out;
+    EXPECT_TRUE(has(checked.out, "lamp spectrum"));
 }
 
 TEST_F(CommandData, JsonHoldsTheValues) {
@@ -66,9 +67,8 @@ TEST_F(CommandData, PlotsAreDrawn) {
     for (const std::string file : {"sand.pdf", "sand.png"}) {
         const CommandResult refused = data(fmt::format("sand --plot {}", file));
         EXPECT_EQ(refused.status, kBadInput);
-        EXPECT_NE(refused.err.find("--plot: found " + file + "; allowed: a name that ends in .svg"),
-                  std::string::npos)
-            << refused.err;
+        EXPECT_TRUE(
+            has(refused.err, "--plot: found " + file + "; allowed: a name that ends in .svg"));
         EXPECT_FALSE(fs::exists(path(file)));
     }
 }
@@ -111,10 +111,9 @@ TEST_F(CommandData, WritesNoTableUnlessAllCanBe) {
                std::string(kSplines) + "#declare IOR_Water = spline { 400, 1.34 700, 1.33 }\n");
     const CommandResult refused = data("--from-spline a.inc -o tables");
     EXPECT_EQ(refused.status, kBadInput);
-    EXPECT_NE(refused.err.find("a.inc:4: IOR_Water: found 1.34 at 400 nm; allowed for "
-                               "reflectance: 0 to 1"),
-              std::string::npos)
-        << refused.err;
+    EXPECT_TRUE(has(refused.err,
+                    "a.inc:4: IOR_Water: found 1.34 at 400 nm; allowed for "
+                    "reflectance: 0 to 1"));
     EXPECT_FALSE(fs::exists(path("tables")));
     const CommandResult some = data("--from-spline a.inc -o tables --only D_Clay*");
     EXPECT_EQ(some.status, 0) << some.err;
@@ -127,10 +126,9 @@ TEST_F(CommandData, OverwritesNoTableUnlessToldTo) {
     write_file(path("d-mud.csv"), "mine");
     const CommandResult refused = data("--from-spline a.inc");
     EXPECT_EQ(refused.status, kBadInput);
-    EXPECT_NE(refused.err.find("d-mud.csv: found a file of this name; allowed: none, unless "
-                               "--force is given"),
-              std::string::npos)
-        << refused.err;
+    EXPECT_TRUE(has(refused.err,
+                    "d-mud.csv: found a file of this name; allowed: none, unless "
+                    "--force is given"));
     EXPECT_EQ(text_of("d-mud.csv"), "mine");
     EXPECT_FALSE(fs::exists(path("d-clay-01.csv")));
     EXPECT_EQ(data("--from-spline a.inc --force").status, 0);
@@ -148,7 +146,7 @@ TEST_F(CommandData, SplineOptionsNeedASplineFile) {
 TEST_F(CommandData, UnknownNameNamesTheNearest) {
     const CommandResult run = data({"pope-fry-1979"});
     EXPECT_EQ(run.status, kBadInput);
-    EXPECT_NE(run.err.find("pope-fry-1997"), std::string::npos) << run.err;
+    EXPECT_TRUE(has(run.err, "pope-fry-1997"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 //
 // What goes wrong for users: one clear message, the right exit status, nothing half written.
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ class CommandErrors : public CommandTest {
 
     void change_rig(const std::string& from, const std::string& to) const {
         std::string text = text_of("rig.toml");
-        ASSERT_NE(text.find(from), std::string::npos) << from;
+        ASSERT_TRUE(has(text, from)) << from;
         write_file(path("rig.toml"), text.replace(text.find(from), from.size(), to));
     }
 
@@ -50,7 +51,7 @@ class CommandErrors : public CommandTest {
         EXPECT_EQ(run.status, status) << run.err;
         EXPECT_EQ(run.out, "");
         EXPECT_TRUE(run.err.starts_with("aphotic: ")) << run.err;
-        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, part));
     }
 };
 
@@ -121,7 +122,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
     for (const auto& [words, message] : cases) {
         const CommandResult run = aphotic(words);
         EXPECT_EQ(run.status, kBadInput) << words;
-        EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, message));
     }
     EXPECT_FALSE(fs::exists(path("map.exr")));
     EXPECT_FALSE(fs::exists(path("map.png")));
@@ -132,13 +133,11 @@ TEST_F(CommandErrors, AnEmptyNameIsNone) {
     for (const char* command : {"render", "generate", "trace", "validate", "study", "lightmap"}) {
         const CommandResult run = aphotic({command, "rig.toml", "-o", ""});
         EXPECT_EQ(run.status, kBadInput) << command;
-        EXPECT_NE(run.err.find("--output: found an empty text; allowed: a name"), std::string::npos)
-            << run.err;
+        EXPECT_TRUE(has(run.err, "--output: found an empty text; allowed: a name"));
     }
     const CommandResult run = aphotic({"integrate", ""});
     EXPECT_EQ(run.status, kBadInput);
-    EXPECT_NE(run.err.find("DIR: found an empty text; allowed: a name"), std::string::npos)
-        << run.err;
+    EXPECT_TRUE(has(run.err, "DIR: found an empty text; allowed: a name"));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "the rig alone";
 }
 
@@ -190,7 +189,7 @@ std::string shown_by_groff(const std::filesystem::path& folder, const std::strin
                     60.0);
     EXPECT_EQ(end.exit_code, 0);
     std::string text = read_text_file(folder / "shown");
-    EXPECT_EQ(text.find("warning: "), std::string::npos) << text.substr(0, 2000);
+    EXPECT_FALSE(has(text, "warning: ")) << text.substr(0, 2000);
     return text;
 }
 
@@ -254,7 +253,7 @@ TEST_F(CommandErrors, MissingPovRayNamesNoTracerForASceneOfTheUsersOwn) {
             aphotic(fmt::format("{} rig.toml -o out --scene own.pov", command),
                     {{"APHOTIC_POVRAY", "/no/povray"}});
         expect_one_message(run, kRunFailed, "install povray");
-        EXPECT_EQ(run.err.find("aphotic trace"), std::string::npos) << run.err;
+        EXPECT_FALSE(has(run.err, "aphotic trace"));
         EXPECT_FALSE(fs::exists(path("out"))) << command;
     }
 }

@@ -3,6 +3,7 @@
 // Every kind of beam through both renderers, as a rig file says it: three strobes that no mirror
 // makes alike, over a floor that leans, with and without a port.
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -150,14 +151,14 @@ TEST_F(BeamTableFile, ThatChangesChangesTheFrames) {
         EXPECT_EQ(run.status, 0) << run.err;
         return run.out;
     };
-    EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);
-    EXPECT_NE(rendered().find("0 frames rendered, 1 kept"), std::string::npos);
+    EXPECT_TRUE(has(rendered(), "1 frame rendered, 0 kept"));
+    EXPECT_TRUE(has(rendered(), "0 frames rendered, 1 kept"));
 
     write_file(path("one.csv"), "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.3\n90,0\n");
     const CommandResult integrated = aphotic("integrate out --rig rig.toml");
     EXPECT_EQ(integrated.status, 2) << integrated.out;
-    EXPECT_NE(integrated.err.find("beam"), std::string::npos) << integrated.err;
-    EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);
+    EXPECT_TRUE(has(integrated.err, "beam"));
+    EXPECT_TRUE(has(rendered(), "1 frame rendered, 0 kept"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "image/output_images.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ class Faults : public CommandTest {
         EXPECT_EQ(run.status, status) << run.err;
         EXPECT_TRUE(run.err.starts_with("aphotic: ")) << run.err;
         EXPECT_EQ(run.err.find("aphotic: ", 1), std::string::npos) << "one message: " << run.err;
-        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, part));
     }
 
     // All files below a folder, by their contents.
@@ -200,8 +201,8 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
         if (status == 0) continue;
         ++failed;
         EXPECT_EQ(status, kRunFailed) << line;
-        EXPECT_NE(line.find("No space left on device"), std::string::npos) << line;
-        EXPECT_NE(line.find("disk/out"), std::string::npos) << line;
+        EXPECT_TRUE(has(line, "No space left on device"));
+        EXPECT_TRUE(has(line, "disk/out"));
     }
     // Those with no room at all, and more.
     EXPECT_GE(failed, 10);
@@ -218,9 +219,8 @@ TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
         "echo \"$? $(tr '\\n' ' ' <err)\"\n");
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
-    EXPECT_NE(lines[0].find((path("tmp") / "aphotic-").string()), std::string::npos) << lines[0];
-    EXPECT_NE(lines[0].find(": No space left on device: 0 KiB are left"), std::string::npos)
-        << lines[0];
+    EXPECT_TRUE(has(lines[0], (path("tmp") / "aphotic-").string()));
+    EXPECT_TRUE(has(lines[0], ": No space left on device: 0 KiB are left"));
     EXPECT_FALSE(fs::exists(path("out")));
 }
 
@@ -334,15 +334,13 @@ TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
             }
             const CommandResult refused = integrate();
             expect_message(refused, kRunFailed, frame(1).filename().string());
-            EXPECT_NE(refused.err.find(is_noted ? spoilt.found
-                                                : "is not the image that the "
-                                                  "manifest notes"),
-                      std::string::npos)
-                << refused.err;
+            EXPECT_TRUE(has(refused.err,
+                            is_noted ? spoilt.found
+                                     : "is not the image that the "
+                                       "manifest notes"));
             EXPECT_EQ(sha256_of_file(path("out") / "image.exr"), image);
             const CommandResult again = render();
-            EXPECT_NE(again.out.find("1 frame rendered, 1 kept"), std::string::npos)
-                << again.out << again.err;
+            EXPECT_TRUE(has(again.out, "1 frame rendered, 1 kept")) << again.err;
             EXPECT_EQ(sha256_of_file(path("out") / "image.exr"), image);
         }
     }
@@ -402,10 +400,9 @@ TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
             const CommandResult run =
                 aphotic(fmt::format("{} rig.toml -o out --wavelengths 450,500,550,600", command));
             expect_message(run, kBadInput, "out/manifest.json");
-            EXPECT_NE(run.err.find("nothing was changed. Remove that file to render "
-                                   "everything again"),
-                      std::string::npos)
-                << run.err;
+            EXPECT_TRUE(has(run.err,
+                            "nothing was changed. Remove that file to render "
+                            "everything again"));
         }
         EXPECT_EQ(contents(folder_.path()), before);
     }
@@ -422,8 +419,8 @@ class BadPovRay : public Faults {
                         const Arguments& more = {}) {
         const CommandResult run = render(povray_that(body), more);
         expect_message(run, kRunFailed, part);
-        EXPECT_NE(run.err.find("band_450_500_550nm"), std::string::npos) << run.err;
-        EXPECT_NE(run.err.find("Its log: "), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, "band_450_500_550nm"));
+        EXPECT_TRUE(has(run.err, "Its log: "));
         EXPECT_TRUE(fs::is_empty(path("out") / "povray" / "frames"));
         EXPECT_FALSE(fs::exists(path("out") / "image.exr"));
     }
@@ -483,7 +480,7 @@ TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
         kScriptTimeoutS);
     const std::string said = text_of("said");
     EXPECT_TRUE(end.succeeded()) << end.words() << said;
-    EXPECT_NE(said.find("rendering"), std::string::npos) << "no progress: " << said;
+    EXPECT_TRUE(has(said, "rendering")) << "no progress: ";
     EXPECT_TRUE(fs::exists(path("out") / "image.exr"));
 }
 
@@ -536,8 +533,7 @@ TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
     EXPECT_FALSE(fs::exists(path("out") / "image.exr"));
 
     const CommandResult again = render_reef();
-    EXPECT_NE(again.out.find("2 frames rendered, 0 kept"), std::string::npos)
-        << again.out << again.err;
+    EXPECT_TRUE(has(again.out, "2 frames rendered, 0 kept")) << again.err;
     EXPECT_EQ(integrate().status, 0);
 }
 

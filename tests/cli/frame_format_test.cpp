@@ -3,6 +3,7 @@
 // Frames as 16-bit PNG, by a POV-Ray that says it has no OpenEXR and by one that has.
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -56,16 +57,15 @@ TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
     put("habcam.toml");
     const CommandResult refused = run_without_openexr("render rig.toml -o exr");
     EXPECT_EQ(refused.status, 3);
-    EXPECT_NE(refused.err.find("built without OpenEXR, in which frames are written; --frame-format "
-                               "png16 does without"),
-              std::string::npos)
-        << refused.err;
+    EXPECT_TRUE(has(refused.err,
+                    "built without OpenEXR, in which frames are written; --frame-format "
+                    "png16 does without"));
     EXPECT_FALSE(fs::exists(path("exr")));
 
     const CommandResult rendered =
         run_without_openexr("render rig.toml --frame-format png16 -o png");
     ASSERT_EQ(rendered.status, 0) << rendered.err;
-    EXPECT_NE(rendered.out.find("frames were PNG"), std::string::npos) << rendered.out;
+    EXPECT_TRUE(has(rendered.out, "frames were PNG"));
     const CommandResult validated = aphotic("validate rig.toml --rendered png -o validation");
     EXPECT_EQ(validated.status, 0) << validated.out << validated.err;
 
@@ -73,8 +73,7 @@ TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
         run_without_openexr("render --frame-format png16 -o own" +
                             Arguments{APHOTIC_SOURCE_DIR "/scenes/user/reef/reef.toml"});
     EXPECT_EQ(own.status, 3);
-    EXPECT_NE(own.err.find("in which a scene of your own is measured"), std::string::npos)
-        << own.err;
+    EXPECT_TRUE(has(own.err, "in which a scene of your own is measured"));
 }
 
 // By half floats and by PNG, each within its promise: with a frame of fog, which is white above the
@@ -87,7 +86,7 @@ TEST_F(FrameFormatOption, ShowsTheSame) {
     toml = std::regex_replace(toml, std::regex(R"(pitch_deg .*)"), "pitch_deg = 80");
     write_file(path("rig.toml"), toml);
     const auto render = [&](const char* format) {
-        return run(
+        return aphotic(
             fmt::format("render rig.toml --frame-format {0} --wavelengths 478,576,638 "
                         "--model-tolerance 1 --json -o {0}",
                         format));
@@ -125,8 +124,7 @@ TEST_F(FrameFormatOption, IsRefusedWhereItCannotServe) {
     make_water_scatter();
     const CommandResult veil = aphotic("render rig.toml --frame-format png16 --veil povray -o out");
     EXPECT_EQ(veil.status, 2);
-    EXPECT_NE(veil.err.find("--frame-format: found png16 with --veil povray"), std::string::npos)
-        << veil.err;
+    EXPECT_TRUE(has(veil.err, "--frame-format: found png16 with --veil povray"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 // tests/validation/*_browser_test.cpp what a browser makes of such names.
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -180,7 +181,7 @@ TEST_F(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
     put_rig(folder_.path(), kInnocent);
     const CommandResult run = aphotic("render rig.toml -o a[b] --fitted 3");
     EXPECT_EQ(run.status, kBadInput);
-    EXPECT_NE(run.err.find("a[b]: found a '['"), std::string::npos) << run.err;
+    EXPECT_TRUE(has(run.err, "a[b]: found a '['"));
     EXPECT_FALSE(fs::exists(path("a[b]")));
 }
 
@@ -189,6 +190,7 @@ TEST_F(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
     for (const std::string& name : kFolderNames) {
         put_rig(folder_.path(), kInnocent);
         const fs::path out = path("called");
+        fs::remove(out);
         fs::create_directory(path("bin"));
         write_script(
             path("bin") / "povray",
@@ -224,7 +226,7 @@ TEST_F(Hostile, FolderThatWouldAddASettingIsRefused) {
         const CommandResult run = aphotic(
             {"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"});
         EXPECT_EQ(run.status, kBadInput) << run.out;
-        EXPECT_NE(run.err.find("for POV-Ray cannot read them"), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, "for POV-Ray cannot read them"));
         EXPECT_FALSE(fs::exists(path(name)));
     }
 }
@@ -237,7 +239,7 @@ TEST_F(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
     const auto expect_refused = [&] {
         const CommandResult run = aphotic("integrate out");
         EXPECT_EQ(run.status, 3) << run.out;
-        EXPECT_NE(run.err.find("band_500nm.exr: cannot be read"), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, "band_500nm.exr: cannot be read"));
     };
     fs::remove(frame);
     ASSERT_EQ(::mkfifo(frame.c_str(), 0600), 0);

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -47,9 +48,7 @@ TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
     const auto json = nlohmann::json::parse(plan.out);
     const CommandResult map = aphotic("lightmap rig.toml -o map.exr");
     ASSERT_EQ(map.status, 0) << map.err;
-    EXPECT_NE(map.out.find("what the model of scattering leaves out is estimated at 0.0"),
-              std::string::npos)
-        << map.out;
+    EXPECT_TRUE(has(map.out, "what the model of scattering leaves out is estimated at 0.0"));
     const std::string noted = ExrReader(path("map.exr")).attribute("aphotic:model_error");
     double red = 0.0;
     double green = 0.0;
@@ -69,11 +68,10 @@ TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
                                 "lightmap rig.toml -o out --altitude 1:2:1"}) {
         const CommandResult refused = aphotic(command + "--model-tolerance 1e-9");
         EXPECT_EQ(refused.status, kBadInput) << command.front();
-        EXPECT_NE(refused.err.find("in what the model of water that scatters leaves out: light "
-                                   "that is turned more than once, and blur; allowed: "
-                                   "--model-tolerance 1e-09"),
-                  std::string::npos)
-            << refused.err;
+        EXPECT_TRUE(has(refused.err,
+                        "in what the model of water that scatters leaves out: light "
+                        "that is turned more than once, and blur; allowed: "
+                        "--model-tolerance 1e-09"));
         EXPECT_FALSE(std::filesystem::exists(path("out"))) << command.front();
         EXPECT_FALSE(std::filesystem::exists(path("map.exr"))) << command.front();
     }

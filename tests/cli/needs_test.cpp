@@ -7,7 +7,7 @@
 #include "image/exr.h"
 #include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
-#include "support/command_test.h"
+#include "support/run_command.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -94,11 +94,9 @@ void write_frames_of_noise(const fs::path& folder, const Manifest& manifest) {
     }
 }
 
-using MemoryOfIntegrate = CommandTest;
-
 // Rows come and go in blocks: what a higher image takes more are its signals and its preview, 25
 // bytes a pixel (image/row_blocks.h). All of its radiance would be 120 bytes a pixel.
-TEST_F(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
+TEST(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
     constexpr int kWidth_px = 512;
     constexpr int kLow_px = 128;
@@ -106,11 +104,13 @@ TEST_F(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     constexpr std::uint64_t kPixel_bytes = 25;
     constexpr std::uint64_t kNoise_bytes = 8ULL << 20U;  // from run to run
     const auto peak_bytes = [](int height_px) {
-        rig_of(folder_.path(), kWidth_px, height_px);
-        const CommandResult made = aphotic("generate rig.toml -o out --bands 30");
+        const TempFolder folder;
+        rig_of(folder.path(), kWidth_px, height_px);
+        const CommandResult made =
+            run_aphotic(folder.path(), "generate rig.toml -o out --bands 30");
         EXPECT_EQ(made.status, 0) << made.err;
-        write_frames_of_noise(path("out"), read_manifest(path("out")));
-        const Measured found = measured(folder_.path(), "integrate out --json");
+        write_frames_of_noise(folder.path() / "out", read_manifest(folder.path() / "out"));
+        const Measured found = measured(folder.path(), "integrate out --json");
         EXPECT_EQ(found.status, 0);
         return found.peak_bytes;
     };
@@ -143,17 +143,18 @@ TEST(MemoryOfTrace, DoesNotGrowWithTheWavelengths) {
     EXPECT_LE(many.peak_bytes, few.peak_bytes + kMostMore_bytes);
 }
 
-using NeedsOfMapsByAltitude = CommandTest;
-
-TEST_F(NeedsOfMapsByAltitude, AreForetold) {
+TEST(NeedsOfMapsByAltitude, AreForetold) {
     constexpr int kSide_px = 64;
-    rig_of(folder_.path(), kSide_px, kSide_px);
+    const TempFolder folder;
+    rig_of(folder.path(), kSide_px, kSide_px);
     const auto written_by = [&](const Arguments& options) {
-        fs::remove_all(path("out"));
-        const CommandResult made = aphotic("lightmap rig.toml -o out --altitude 1:4:1" + options);
+        fs::remove_all(folder.path() / "out");
+        const CommandResult made =
+            run_aphotic(folder.path(), "lightmap rig.toml -o out --altitude 1:4:1" + options);
         EXPECT_EQ(made.status, 0) << made.err;
         std::uint64_t bytes = 0;
-        for (const auto& entry : fs::directory_iterator(path("out"))) bytes += entry.file_size();
+        for (const auto& entry : fs::directory_iterator(folder.path() / "out"))
+            bytes += entry.file_size();
         return bytes;
     };
     const std::uint64_t maps_bytes =
@@ -196,9 +197,7 @@ OnSmallDisk on_small_disk(const fs::path& folder,
     return {.is_possible = is_possible, .status = end.exit_code, .said = said};
 }
 
-using Needs = CommandTest;
-
-TEST_F(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
+TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
     const TempFolder folder;
     rig_of(folder.path(), 640, 480);
     for (const char* command : {"trace rig.toml -o disk/out",
@@ -221,7 +220,7 @@ TEST_F(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
 }
 
 // Scenes that fit, whose frames do not.
-TEST_F(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
+TEST(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
     const TempFolder folder;
     rig_of(folder.path(), 640, 480);
     const OnSmallDisk run = on_small_disk(
@@ -234,7 +233,7 @@ TEST_F(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
     EXPECT_NE(run.said.find("Nothing was begun"), std::string::npos) << run.said;
 }
 
-TEST_F(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
+TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const TempFolder folder;
     rig_of(folder.path(), 64, 48);
     const DiskNeeds needs = images_needs({.width_px = 64, .height_px = 48, .wavelengths = 3});
@@ -280,7 +279,7 @@ TEST(Memory, ThatDoesNotDoIsSaid) {
 // 12 bands take 7.8 MB at most, of which the images are 5.9 MB; 13 bands take 8.5 MB; 7.2 MB are
 // left. The same render finds its frames there and needs no room for them, another must make its
 // own.
-TEST_F(Needs, FramesThatAreKeptNeedNone) {
+TEST(Needs, FramesThatAreKeptNeedNone) {
     const TempFolder folder;
     rig_of(folder.path(), 320, 240);
     const std::string fill = " && dd if=/dev/zero of=disk/fill bs=1k count=300";
@@ -303,9 +302,10 @@ TEST_F(Needs, FramesThatAreKeptNeedNone) {
 }
 
 // Sixteen thousand pixels each way, which no test could render.
-TEST_F(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
-    rig_of(folder_.path(), 16384, 16384);
-    const CommandResult plan = aphotic("plan rig.toml --fitted 9 --json");
+TEST(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
+    const TempFolder folder;
+    rig_of(folder.path(), 16384, 16384);
+    const CommandResult plan = run_aphotic(folder.path(), "plan rig.toml --fitted 9 --json");
     ASSERT_EQ(plan.status, 0) << plan.err;
     const auto needs = nlohmann::json::parse(plan.out).at("needs");
     constexpr double kPixels = 16384.0 * 16384.0;

@@ -2,6 +2,7 @@
 //
 // Things on the floor through both renderers: scenes/objects.toml with its sphere, box and mesh in
 // the light of four strobes of three cones, in water, and tilted both ways.
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 
@@ -18,7 +19,7 @@ constexpr double kHalfFloatError = 6e-4;
 constexpr int kMostOnEdges = 136 * 102 / 300;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << from;
+    EXPECT_TRUE(has(text, from)) << from;
     return text.replace(text.find(from), from.size(), to);
 }
 

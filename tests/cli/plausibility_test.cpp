@@ -2,6 +2,7 @@
 //
 // Rigs whose numbers are in another unit, as every command that reads a rig tells of them.
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <gtest/gtest.h>
 
@@ -62,13 +63,10 @@ TEST_F(CommandPlausibility, EveryCommandWarnsAndStrictRefusesBeforeItWrites) {
         strict.emplace_back("--strict");
         const CommandResult result = aphotic(strict);
         EXPECT_EQ(result.status, kBadInput) << command[0] << "\n" << result.err;
-        EXPECT_NE(result.err.find("aphotic: --strict: looks wrong: high.toml:"), std::string::npos)
-            << command[0] << "\n"
-            << result.err;
-        EXPECT_NE(result.err.find("sled.altitude_m: found 2000; usual: 0.05 to 30"),
-                  std::string::npos)
-            << command[0] << "\n"
-            << result.err;
+        EXPECT_TRUE(has(result.err, "aphotic: --strict: looks wrong: high.toml:"))
+            << command[0] << "\n";
+        EXPECT_TRUE(has(result.err, "sled.altitude_m: found 2000; usual: 0.05 to 30"))
+            << command[0] << "\n";
         EXPECT_FALSE(fs::exists(path("out"))) << command[0];
         EXPECT_FALSE(fs::exists(path("out.exr"))) << command[0];
     }
@@ -77,11 +75,10 @@ TEST_F(CommandPlausibility, EveryCommandWarnsAndStrictRefusesBeforeItWrites) {
 TEST_F(CommandPlausibility, ABlackMapIsToldOfAndWritten) {
     const CommandResult result = aphotic("lightmap up.toml -o map.exr");
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.err.find("aphotic: looks wrong: up.toml: strobe[0]: 'lamp' is aimed 90 "
-                              "degrees above the horizon, and lights nothing"),
-              std::string::npos)
-        << result.err;
-    EXPECT_NE(result.err.find("images are black"), std::string::npos) << result.err;
+    EXPECT_TRUE(has(result.err,
+                    "aphotic: looks wrong: up.toml: strobe[0]: 'lamp' is aimed 90 "
+                    "degrees above the horizon, and lights nothing"));
+    EXPECT_TRUE(has(result.err, "images are black"));
     EXPECT_TRUE(fs::exists(path("map.exr")));
 }
 
@@ -89,7 +86,7 @@ TEST_F(CommandPlausibility, WhatAnOptionSetsIsJudged) {
     const CommandResult right = aphotic("lightmap right.toml -o map.exr --strict");
     EXPECT_EQ(right.status, 0) << right.err;
     const CommandResult high = aphotic("lightmap right.toml -o map.exr --altitude 2000");
-    EXPECT_NE(high.err.find("2 if that is in millimetres"), std::string::npos) << high.err;
+    EXPECT_TRUE(has(high.err, "2 if that is in millimetres"));
 }
 
 }  // namespace

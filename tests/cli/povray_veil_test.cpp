@@ -5,6 +5,7 @@
 #include "image/output_images.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ TEST_F(PovrayVeilCommand, KeepsItsFramesAndIntegratesThem) {
     EXPECT_EQ(again.at("frames_rendered"), 0);
     const CommandResult integrated = aphotic("integrate out");
     EXPECT_EQ(integrated.status, 0) << integrated.err;
-    EXPECT_NE(integrated.out.find("which is no bound"), std::string::npos) << integrated.out;
+    EXPECT_TRUE(has(integrated.out, "which is no bound"));
     EXPECT_EQ(signals("out"), image);
     // Other samples make other frames, and only of the veil.
     const auto finer = rendered("out", "--veil povray --veil-samples 60");
@@ -97,7 +98,7 @@ TEST_F(PovrayVeilCommand, IsNotValidatedWithObjects) {
                    "centre_m = [0.3, 0.2, 1.2]\nradius_m = 0.25\nreflectance = \"sand\"\n");
     const CommandResult run = aphotic("validate ball.toml --veil povray -o out");
     EXPECT_EQ(run.status, 2) << run.out << run.err;
-    EXPECT_NE(run.err.find("shadows"), std::string::npos) << run.err;
+    EXPECT_TRUE(has(run.err, "shadows"));
 }
 
 // Colours that are numbers are not black in the veil's frames: what they show is taken off.

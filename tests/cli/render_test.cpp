@@ -3,6 +3,7 @@
 // The main job as a user runs it.
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -33,7 +34,7 @@ class CommandRender : public CommandTest {
 TEST_F(CommandRender, LeavesWhatTheDesignPromises) {
     const CommandResult run = aphotic("render rig.toml -o out --bands 6");
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.out.find("2 frames rendered, 0 kept"), std::string::npos) << run.out;
+    EXPECT_TRUE(has(run.out, "2 frames rendered, 0 kept"));
     EXPECT_EQ(run.err, "");
     for (const char* file :
          {"image.exr", "spectral.exr", "preview.png", "manifest.json", "povray/render.ini"}) {

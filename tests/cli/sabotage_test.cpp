@@ -9,6 +9,7 @@
 #include "scene_gen/veil_planes.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -38,7 +39,7 @@ const std::string kAnyChannel = "R|G|B";
 const std::string kAllOfThem = kAnyWavelength + "|" + kAnyChannel;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << "nothing to spoil: " << from;
+    EXPECT_TRUE(has(text, from)) << "nothing to spoil: " << from;
     for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
         text.replace(at, from.size(), to);
     }
@@ -100,7 +101,7 @@ class Sabotage : public CommandTest {
   protected:
     void expect_no(const std::string& worst, const CommandResult& run) {
         EXPECT_EQ(run.status, kAnswerIsNo) << run.out << run.err;
-        EXPECT_NE(run.out.find("DISAGREE"), std::string::npos) << run.out;
+        EXPECT_TRUE(has(run.out, "DISAGREE"));
         const std::regex named("worst against its bound: (" + worst + ") at column");
         EXPECT_TRUE(std::regex_search(run.out, named)) << "not " << worst << ": " << run.out;
         const auto json = nlohmann::json::parse(read_text_file(path("out") / "validation.json"));

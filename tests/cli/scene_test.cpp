@@ -6,6 +6,7 @@
 #include "plugin/povray.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
     const CommandResult run = aphotic("validate rig.toml --scene reef.pov -o out");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     const std::string page = read_text_file(home_ / "out" / "report.html");
-    EXPECT_NE(page.find("reef.pov\u2069, a scene of the user’s own"), std::string::npos)
+    EXPECT_TRUE(has(page, "reef.pov\u2069, a scene of the user’s own"))
         << "the page says what the reference did not read";
     const auto json = nlohmann::json::parse(read_text_file(home_ / "out" / "validation.json"));
     EXPECT_TRUE(json.at("rig").at("scene").get<std::string>().ends_with("reef.pov"));
@@ -64,7 +65,7 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
 TEST_F(UserScenes, HaveTheVeilOfWaterThatScatters) {
     std::string rig = read_text_file(home_ / "rig.toml");
     const auto replace = [&](const std::string& from, const std::string& to) {
-        ASSERT_NE(rig.find(from), std::string::npos) << from;
+        ASSERT_TRUE(has(rig, from)) << from;
         rig.replace(rig.find(from), from.size(), to);
     };
     replace("absorption = \"pope-fry-1997\"",
@@ -86,7 +87,7 @@ TEST_F(UserScenes, ARigMayNameItsScene) {
     put("rig.toml", "scene = \"reef.pov\"\n" + rig);
     const CommandResult plan = aphotic("plan rig.toml");
     EXPECT_EQ(plan.status, 0) << plan.err;
-    EXPECT_NE(plan.out.find("reef.pov uses sand"), std::string::npos) << plan.out;
+    EXPECT_TRUE(has(plan.out, "reef.pov uses sand"));
     // The reference knows no scene, and needs no POV-Ray.
     EXPECT_EQ(run_aphotic(home_, "trace rig.toml -o t", {{"APHOTIC_POVRAY", "none"}}).status, 0);
 }
@@ -157,12 +158,12 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
         return run;
     };
     const CommandResult words = with("render -o out");
-    EXPECT_NE(words.err.find("reef.pov: no promise: numeric colours"), std::string::npos);
-    EXPECT_NE(words.out.find("no bound on the error"), std::string::npos) << words.out;
-    EXPECT_EQ(words.out.find("at most"), std::string::npos) << words.out;
+    EXPECT_TRUE(has(words.err, "reef.pov: no promise: numeric colours"));
+    EXPECT_TRUE(has(words.out, "no bound on the error"));
+    EXPECT_FALSE(has(words.out, "at most"));
     const CommandResult planned = with("plan");
-    EXPECT_NE(planned.out.find("no bound on the error"), std::string::npos) << planned.out;
-    EXPECT_EQ(planned.out.find("No pixel's signal"), std::string::npos) << planned.out;
+    EXPECT_TRUE(has(planned.out, "no bound on the error"));
+    EXPECT_FALSE(has(planned.out, "No pixel's signal"));
 
     const auto expect_none = [](const nlohmann::json& json) {
         EXPECT_TRUE(json.at("promise").is_null());
@@ -185,8 +186,7 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
     }
     const CommandResult validated = aphotic("validate rig.toml --scene reef.pov -o check");
     EXPECT_EQ(validated.status, 2);
-    EXPECT_NE(validated.err.find("has no error bound to validate against"), std::string::npos)
-        << validated.err;
+    EXPECT_TRUE(has(validated.err, "has no error bound to validate against"));
 }
 
 TEST_F(UserScenes, HaveAClockForAnimations) {
@@ -201,7 +201,7 @@ TEST_F(UserScenes, HaveAClockForAnimations) {
     EXPECT_EQ(signals("out"), signals("still"));
     const CommandResult none = aphotic("plan rig.toml --clock 1");
     EXPECT_EQ(none.status, 2);
-    EXPECT_NE(none.err.find("--clock: found 1 without a scene"), std::string::npos) << none.err;
+    EXPECT_TRUE(has(none.err, "--clock: found 1 without a scene"));
 }
 
 TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
@@ -222,15 +222,15 @@ TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
     const CommandResult folder =
         aphotic({"render", "rig.toml", "--scene", "reef.pov", "-o", "\xC3\xBC", "--fitted", "1"});
     EXPECT_EQ(folder.status, 2);
-    EXPECT_NE(folder.err.find("letters beyond ASCII"), std::string::npos) << folder.err;
+    EXPECT_TRUE(has(folder.err, "letters beyond ASCII"));
     put("own.toml", "scene = \"reef.pov\"\n" + read_text_file(home_ / "rig.toml"));
     const CommandResult study = aphotic("study own.toml -o study");
     EXPECT_EQ(study.status, 2);
-    EXPECT_NE(study.err.find("own.toml: scene: found"), std::string::npos) << study.err;
+    EXPECT_TRUE(has(study.err, "own.toml: scene: found"));
     // Nor can it be given one beside the rig: what has no promise enters no study.
     const CommandResult option = aphotic("study rig.toml --scene reef.pov -o study");
     EXPECT_EQ(option.status, 2);
-    EXPECT_NE(option.err.find("--scene"), std::string::npos) << option.err;
+    EXPECT_TRUE(has(option.err, "--scene"));
     EXPECT_FALSE(fs::exists(home_ / "study"));
 }
 
@@ -244,7 +244,7 @@ TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {
         const CommandResult run =
             aphotic("render rig.toml --scene reef.pov -o out" + Arguments{"--povray-ini", setting});
         EXPECT_EQ(run.status, 2) << setting;
-        EXPECT_NE(run.err.find("--povray-ini: found"), std::string::npos) << run.err;
+        EXPECT_TRUE(has(run.err, "--povray-ini: found"));
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // --set KEY=VALUE: the rig is what its file would be with that text.
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
@@ -42,7 +43,7 @@ class CommandSet : public testing::Test {
     void expect_refused(const std::string& words, const Arguments& arguments) const {
         const CommandResult refused = run(arguments);
         EXPECT_EQ(refused.status, kBadInput) << testing::PrintToString(arguments);
-        EXPECT_NE(refused.err.find(words), std::string::npos) << refused.err;
+        EXPECT_TRUE(has(refused.err, words));
         EXPECT_FALSE(fs::exists(small_.folder() / "out")) << words;
     }
 

@@ -3,6 +3,7 @@
 // Large work in shares, as several machines would do it: side by side, without a lock between them.
 // Joined, it is bit for bit what one machine makes.
 #include "support/command_under_way.h"
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
@@ -165,7 +166,7 @@ TEST_F(Shares, SayWhatIsWrong) {
     const auto expect = [&](const Arguments& arguments, const std::string& part) {
         const CommandResult result = run(arguments);
         EXPECT_EQ(result.status, 2) << result.err;
-        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_TRUE(has(result.err, part));
     };
     expect("render rig.toml", "--output: is missing");
     expect("render rig.toml --frames 1/2", "found no manifest.json");

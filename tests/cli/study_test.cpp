@@ -2,6 +2,7 @@
 //
 // aphotic study and aphotic plan --plot, as a user runs them, on a small HabCam.
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -46,8 +47,8 @@ TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
     write_file(path("out") / "study.json", without.dump());
     const CommandResult resumed = aphotic(study);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_NE(resumed.err.find("6 equal bands"), std::string::npos) << resumed.err;
-    EXPECT_EQ(resumed.err.find("fitted"), std::string::npos) << resumed.err;
+    EXPECT_TRUE(has(resumed.err, "6 equal bands"));
+    EXPECT_FALSE(has(resumed.err, "fitted"));
     EXPECT_EQ(nlohmann::json::parse(resumed.out).at("measures").size(), measures.size() + 1);
     // A reference that is none is traced again.
     const fs::path reference = path("out") / "reference" / "image.exr";
@@ -63,9 +64,9 @@ TEST_F(Study, TriesWhatIsAskedFor) {
     const CommandResult asked =
         aphotic("study --fitted 3,3 --bands 4 --tolerance 0.01 rig.toml -o out");
     ASSERT_EQ(asked.status, 0) << asked.err;
-    EXPECT_NE(asked.out.find("3 settings"), std::string::npos) << asked.out;
+    EXPECT_TRUE(has(asked.out, "3 settings"));
     for (const char* words : {"tolerance 0.01", "3 fitted wavelengths", "4 equal bands"})
-        EXPECT_NE(asked.out.find(words), std::string::npos) << asked.out;
+        EXPECT_TRUE(has(asked.out, words));
     const CommandResult beyond = aphotic("study rig.toml --tolerance 1e-9 -o beyond");
     EXPECT_EQ(beyond.status, 2) << beyond.out;
     EXPECT_FALSE(fs::exists(path("beyond")));

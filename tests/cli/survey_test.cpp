@@ -189,7 +189,7 @@ TEST_F(SurveyCommand, TellsItsExposure) {
     toml.insert(toml.find("resolution"), "exposure_ms = 2.5\niso = 400\nf_number = 4\n");
     write_file(path("rig.toml"), toml);
     const auto electrons = [&](const std::string& folder, const Arguments& more) {
-        const CommandResult made = run(
+        const CommandResult made = aphotic(
             fmt::format("survey rig.toml --images 1 --no-noise --white-level 65535 --json -o {}",
                         folder) +
             more);

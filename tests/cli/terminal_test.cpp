@@ -5,6 +5,7 @@
 #include "base/printable.h"
 #include "image/exr.h"
 #include "support/command_test.h"
+#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -38,7 +39,7 @@ void expect_plain(const std::string& said, const std::string& what) {
         return text;
     }()))
         << what;
-    EXPECT_EQ(said.find("\naphotic: done"), std::string::npos) << what;
+    EXPECT_FALSE(has(said, "\naphotic: done")) << what;
 }
 
 class Terminal : public CommandTest {
@@ -61,7 +62,7 @@ class Terminal : public CommandTest {
         EXPECT_TRUE(run.status == kBadInput || run.status == kAnswerIsNo) << what;
         EXPECT_LT(run.err.size(), kMostPrinted_bytes) << what;
         EXPECT_LE(std::ranges::count(run.err, '\n'), 2) << what;
-        EXPECT_NE(run.err.find(shown), std::string::npos) << what;
+        EXPECT_TRUE(has(run.err, shown)) << what;
         expect_plain(run.err, what);
         expect_plain(run.out, what);
     }

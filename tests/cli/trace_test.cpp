@@ -3,6 +3,7 @@
 // aphotic trace beside renders: its images are never taken for POV-Ray's.
 #include "image/traced_image.h"
 #include "support/command_test.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -40,9 +41,7 @@ TEST_F(CommandTrace, RefusesTheFolderOfARender) {
     const std::string image = text_of("out/image.exr");
     const CommandResult trace = run("trace", "out");
     EXPECT_EQ(trace.status, kBadInput);
-    EXPECT_NE(trace.err.find("out/manifest.json: found the manifest of a render; allowed: "),
-              std::string::npos)
-        << trace.err;
+    EXPECT_TRUE(has(trace.err, "out/manifest.json: found the manifest of a render; allowed: "));
     EXPECT_EQ(text_of("out/image.exr"), image);
     EXPECT_FALSE(fs::exists(path("out/trace.json")));
 }
@@ -80,9 +79,7 @@ TEST_F(CommandTrace, IntegrationsKeepOutOfOtherImagesFolders) {
         const std::string before = read_text_file(image);
         const CommandResult refused = integrate(arguments);
         EXPECT_EQ(refused.status, kBadInput);
-        EXPECT_NE(refused.err.find(notes + ": found the notes of a render or trace; allowed: "),
-                  std::string::npos)
-            << refused.err;
+        EXPECT_TRUE(has(refused.err, notes + ": found the notes of a render or trace; allowed: "));
         EXPECT_EQ(read_text_file(image), before);
     };
     expect_refused("-o traced", "traced/trace.json");
@@ -103,10 +100,8 @@ TEST_F(CommandTrace, IsNotHeldAgainstItself) {
             path("traced") / image, path(mixed) / image, fs::copy_options::overwrite_existing);
         const CommandResult refused = validate(mixed);
         EXPECT_EQ(refused.status, kBadInput) << refused.out;
-        EXPECT_NE(
-            refused.err.find(mixed + "/" + image + ": found an image of the reference tracer"),
-            std::string::npos)
-            << refused.err;
+        EXPECT_TRUE(
+            has(refused.err, mixed + "/" + image + ": found an image of the reference tracer"));
         EXPECT_FALSE(fs::exists(path("validation"))) << "and leaves no folder";
         // As the message says, the frames are still there.
         ASSERT_EQ(aphotic(fmt::format("integrate {}", mixed)).status, 0);

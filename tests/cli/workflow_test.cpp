@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "plugin/process.h"
 #include "support/command_under_way.h"
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
@@ -155,7 +156,7 @@ TEST_F(Workflow, BySnakemake) {
 
     // What is done is not done again; what is new is.
     EXPECT_EQ(run(snakemake + " --dry-run"), 0);
-    EXPECT_NE(log().find("Nothing to be done"), std::string::npos) << log();
+    EXPECT_TRUE(has(log(), "Nothing to be done"));
     const fs::path old = path("results/rigs/small/sled.altitude_m=2_water.multiple=1/image.exr");
     const auto written = fs::last_write_time(old);
     const std::string config = read_text_file(path("config/config.yaml"));
