@@ -13,6 +13,7 @@
 #include "scene_gen/scene_set.h"
 #include "spectral/curve_loader.h"
 #include "support/closed_form.h"
+#include "support/scene_text.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -50,14 +51,6 @@ inline SceneSet scenes_of(const Rig& rig,
     request.wavelengths_nm = lambda_nm;
     request.scene = options;
     return make_scene_set(rig, plan_render(rig, request));
-}
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << "the scene has no '" << from << "'";
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
-    }
-    return text;
 }
 
 // The scene as POV-Ray reads it, with aphotic.inc in its place, for tests that change it.

@@ -8,6 +8,9 @@
 #include "support/arguments.h"
 #include "support/temp_folder.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <fstream>
 #include <map>
 #include <string>
@@ -15,10 +18,15 @@
 
 namespace aphotic {
 
+inline constexpr int kAnswerIsNo = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kRunFailed = 3;
+
 struct CommandResult {
     int status = 0;
     std::string out;
     std::string err;
+    std::string line = {};  // as it was given
 };
 
 // folder: where it runs, and where relative paths start. environment: on top of ours.
@@ -40,7 +48,8 @@ inline CommandResult run_aphotic(const std::filesystem::path& folder,
                                        kTimeoutS);
     return {.status = end.signal != 0 ? 128 + end.signal : end.exit_code,
             .out = read_text_file(streams.path() / "out"),
-            .err = read_text_file(streams.path() / "err")};
+            .err = read_text_file(streams.path() / "err"),
+            .line = fmt::format("aphotic {}", fmt::join(arguments, " "))};
 }
 
 // A program of the test's own, such as a POV-Ray that misbehaves.

@@ -3,7 +3,7 @@
 // The project's scenes with few pixels over the same field of view.
 #pragma once
 
-#include "base/atomic_file.h"
+#include "support/scene_text.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>
@@ -27,13 +27,12 @@ inline std::vector<std::filesystem::path> rigs_under(const std::filesystem::path
 
 // Those that POV-Ray scenes of the users' own come with.
 inline std::vector<std::filesystem::path> user_scenes() {
-    return rigs_under(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user");
+    return rigs_under(scene_file("user"));
 }
 
 // All others: what they show is in the rig.
 inline std::vector<std::filesystem::path> all_scenes() {
-    std::vector<std::filesystem::path> scenes =
-        rigs_under(std::string(APHOTIC_SOURCE_DIR) + "/scenes");
+    std::vector<std::filesystem::path> scenes = rigs_under(scene_file(""));
     const std::vector<std::filesystem::path> apart = user_scenes();
     std::erase_if(scenes, [&](const auto& scene) {
         return std::binary_search(apart.begin(), apart.end(), scene);
@@ -41,9 +40,9 @@ inline std::vector<std::filesystem::path> all_scenes() {
     return scenes;
 }
 
-// A rig file's text, so many times coarser each way.
+// A rig's text, so many times coarser each way.
 inline std::string small_scene(const std::filesystem::path& file, int coarser = 40) {
-    std::string text = read_text_file(file);
+    std::string text = scene_text(file);
     std::smatch found;
     const std::regex resolution(R"(\nresolution\s*=\s*\[(\d+), (\d+)\])");
     const std::regex pitch(R"(\npixel_pitch_um\s*=\s*([0-9.]+))");
@@ -63,7 +62,7 @@ inline std::string small_scene(const std::filesystem::path& file, int coarser = 
 inline void put_small_scene(const std::filesystem::path& file,
                             const std::filesystem::path& folder) {
     write_file(folder / "rig.toml", small_scene(file));
-    for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+    for (const auto& entry : std::filesystem::directory_iterator(scene_file(file).parent_path())) {
         if (entry.path().extension() == ".toml" || entry.is_directory()) continue;
         std::filesystem::copy_file(entry.path(), folder / entry.path().filename());
     }

@@ -7,13 +7,13 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "support/run_command.h"
+#include "support/scene_text.h"
 #include "support/temp_folder.h"
 #include "survey/simulate/flight.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -23,14 +23,12 @@ class SmallSurvey {
   public:
     SmallSurvey() {
         namespace fs = std::filesystem;
-        const fs::path scenes = fs::path(APHOTIC_SOURCE_DIR) / "scenes";
         fs::create_directories(folder() / "scenes/user");
-        fs::copy(scenes / "survey", folder() / "scenes/survey");
-        fs::copy(scenes / "user/reef", folder() / "scenes/user/reef");
-        write_file(
-            rig(),
-            with(
-                "pixel_pitch_um", "51.6", with("resolution", "[170, 128]", read_text_file(rig()))));
+        fs::copy(scene_file("survey"), folder() / "scenes/survey");
+        fs::copy(scene_file("user/reef"), folder() / "scenes/user/reef");
+        write_file(rig(),
+                   with(read_text_file(rig()),
+                        {{"resolution", "[170, 128]"}, {"pixel_pitch_um", "51.6"}}));
     }
 
     [[nodiscard]] const std::filesystem::path& folder() const { return temp_.path(); }
@@ -40,12 +38,12 @@ class SmallSurvey {
 
     // The rig over its own bare floor, where the sled was at an image.
     [[nodiscard]] std::filesystem::path rig_at(const Leg& leg) const {
-        std::string text =
-            with("altitude_m", fmt::format("{}", leg.sled.altitude_m), read_text_file(rig()));
-        text = with("pitch_deg", fmt::format("{}", leg.sled.pitch_rad * kDegreesPerRadian), text);
-        text = with("roll_deg", fmt::format("{}", leg.sled.roll_rad * kDegreesPerRadian), text);
         const std::filesystem::path file = rig().parent_path() / (leg.name + ".toml");
-        write_file(file, text);
+        write_file(file,
+                   with(read_text_file(rig()),
+                        {{"altitude_m", fmt::format("{}", leg.sled.altitude_m)},
+                         {"pitch_deg", fmt::format("{}", leg.sled.pitch_rad * kDegreesPerRadian)},
+                         {"roll_deg", fmt::format("{}", leg.sled.roll_rad * kDegreesPerRadian)}}));
         return file;
     }
 
@@ -59,14 +57,6 @@ class SmallSurvey {
     }
 
   private:
-    // A key's line with another value.
-    static std::string with(const std::string& key,
-                            const std::string& value,
-                            const std::string& text) {
-        return std::regex_replace(
-            text, std::regex("\n" + key + " *= [^\n]*"), "\n" + key + " = " + value);
-    }
-
     TempFolder temp_;
 };
 
