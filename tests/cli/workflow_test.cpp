@@ -40,7 +40,7 @@ bool has_program(const std::string& name) {
     return false;
 }
 
-class Workflow : public testing::Test {
+class Workflow : public SmallRigTest {
   protected:
     // `aphotic` of the tests, which fails once at an altitude of 2 m in thin water.
     void SetUp() override {
@@ -51,33 +51,28 @@ class Workflow : public testing::Test {
                          std::string(APHOTIC_COMMAND) + "' \"$@\"\n");
     }
 
-    [[nodiscard]] fs::path path(const std::string& name) const { return small_.folder() / name; }
-
     // By a shell; its process number in `pid`.
     [[nodiscard]] ProcessRequest shell(const std::string& script) const {
-        return {.executable = "/bin/sh",
-                .arguments = {"-c", "echo $$ > pid; " + script},
-                .folder = small_.folder(),
-                .environment = {{"HOME", small_.folder().string()},
-                                {"XDG_CACHE_HOME", path("cache").string()}},
-                .log = path("engine.log")};
+        return {
+            .executable = "/bin/sh",
+            .arguments = {"-c", "echo $$ > pid; " + script},
+            .folder = home_,
+            .environment = {{"HOME", home_.string()}, {"XDG_CACHE_HOME", path("cache").string()}},
+            .log = path("engine.log")};
     }
     [[nodiscard]] int run(const std::string& script) const {
         return run_process(shell(script), kEngine_s).exit_code;
     }
-    [[nodiscard]] std::string log() const { return read_text_file(path("engine.log")); }
+    [[nodiscard]] std::string log() const { return text_of("engine.log"); }
 
     void expect_image_of(const std::string& altitude,
                          const std::string& multiple,
                          const fs::path& image) const {
         fs::remove_all(path("alone"));
-        const CommandResult alone = run_aphotic(
-            small_.folder(),
-            fmt::format("trace rig.toml -o alone --set sled.altitude_m={} --set water.multiple={}",
-                        altitude,
-                        multiple));
-        ASSERT_EQ(alone.status, 0) << alone.err;
-        EXPECT_TRUE(read_text_file(path("alone/image.exr")) == read_text_file(image)) << image;
+        done(fmt::format("trace rig.toml -o alone --set sled.altitude_m={} --set water.multiple={}",
+                         altitude,
+                         multiple));
+        EXPECT_TRUE(text_of("alone/image.exr") == read_text_file(image)) << image;
     }
 
     static bool comes_true_in_time(const std::function<bool()>& condition) {
@@ -89,15 +84,13 @@ class Workflow : public testing::Test {
         }
         return true;
     }
-
-    SmallRig small_;
 };
 
 TEST_F(Workflow, BySnakemake) {
     if (!has_program("snakemake")) GTEST_SKIP() << "Snakemake is not installed";
     fs::copy(
         fs::path(APHOTIC_SOURCE_DIR) / "workflow", path("workflow"), fs::copy_options::recursive);
-    ASSERT_EQ(run_aphotic(small_.folder(), "survey rig.toml --images 5 -o dive").status, 0);
+    done("survey rig.toml --images 5 -o dive");
     const std::string numbers = "--bayer RGGB --black-level 64 --white-level 4095";
     const std::string navigation = "--nav dive/navigation-measured.txt";
     fs::create_directory(path("config"));
@@ -120,7 +113,7 @@ TEST_F(Workflow, BySnakemake) {
         ASSERT_TRUE(comes_true_in_time([&] { return images() > 0 || process.poll(); })) << log();
         if (!process.poll()) ::kill(std::stoi(read_text_file(path("pid"))), SIGTERM);
         ASSERT_TRUE(comes_true_in_time([&] { return process.poll().has_value(); })) << log();
-        ASSERT_TRUE(comes_true_in_time([&] { return processes_in(small_.folder()).empty(); }));
+        ASSERT_TRUE(comes_true_in_time([&] { return processes_in(home_).empty(); }));
     }
     ASSERT_EQ(run(snakemake), 0) << log();
     EXPECT_TRUE(fs::exists(path("failed")));
