@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic compare with --scale and --report, as a user runs it.
-#include "image/exr.h"
 #include "support/command_test.h"
+#include "support/exr_file.h"
 #include "support/has.h"
 #include "support/page.h"
 
@@ -16,8 +16,6 @@
 
 namespace aphotic::compare_test {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kWidth_px = 24;
 constexpr int kHeight_px = 16;
@@ -33,21 +31,15 @@ class CommandCompare : public CommandTest {
     void write(const std::string& name,
                const std::vector<Plane>& planes,
                const std::vector<std::string>& channels = kRgb) {
-        ExrWriter exr(path(name), kWidth_px, kHeight_px, channels, {});
         Plane samples;
         for (const Plane& plane : planes) samples.insert(samples.end(), plane.begin(), plane.end());
-        exr.write_rows(kHeight_px, samples);
-        exr.finish();
+        write_exr(path(name), kWidth_px, samples, channels);
     }
 
-    CommandResult compare(const Arguments& options) {
-        return aphotic("compare a.exr b.exr" + options);
-    }
+    static Arguments compare(const Arguments& options) { return "compare a.exr b.exr" + options; }
 
     nlohmann::json json_of(const Arguments& options, int status) {
-        const CommandResult result = compare(options + "--json");
-        EXPECT_EQ(result.status, status) << result.err << result.out;
-        return nlohmann::json::parse(result.out);
+        return json_by(compare(options + "--json"), status);
     }
 };
 
@@ -74,7 +66,7 @@ const std::vector<Plane> kReference{pattern(1.0), pattern(2.0), pattern(0.5)};
 TEST_F(CommandCompare, ScaleTakesTheExposureAway) {
     write("a.exr", times(kReference, {640.0, 640.0, 640.0}));
     write("b.exr", kReference);
-    EXPECT_EQ(compare({}).status, 1) << "no factor is fitted unasked";
+    EXPECT_EQ(aphotic(compare({})).status, kAnswerIsNo) << "no factor is fitted unasked";
     const nlohmann::json json = json_of("--scale", 0);
     EXPECT_EQ(json["scaled"], "image");
     for (const auto& channel : json["channels"])
@@ -94,7 +86,7 @@ TEST_F(CommandCompare, ScalePerChannelTakesTheColourAwayToo) {
         const double own = channel["name"] == "R" ? 2.0 : channel["name"] == "G" ? 3.0 : 5.0;
         EXPECT_NEAR(channel["scale"].get<double>(), own, own * kFloat) << channel["name"];
     }
-    EXPECT_NE(compare("--scale=per-channel").out.find("/ 5"), std::string::npos);
+    EXPECT_TRUE(has(aphotic(compare("--scale=per-channel")).out, "/ 5"));
 }
 
 // A bent pattern is no factor away.
@@ -105,8 +97,8 @@ TEST_F(CommandCompare, ScaleHidesNoOtherDifference) {
     }
     write("a.exr", bent);
     write("b.exr", kReference);
-    EXPECT_EQ(compare("--scale --bound 0.004").status, 1);
-    EXPECT_EQ(compare("--scale --bound 0.011").status, 0);
+    EXPECT_EQ(aphotic(compare("--scale --bound 0.004")).status, 1);
+    done(compare("--scale --bound 0.011"));
 }
 
 TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
@@ -118,7 +110,7 @@ TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
     }
     write("b.exr", kReference);
     write("a.exr", observed);
-    EXPECT_EQ(compare({}).status, 1) << "nothing says that it was not observed";
+    EXPECT_EQ(aphotic(compare({})).status, kAnswerIsNo) << "nothing says that it was not observed";
 
     observed.push_back(counts);
     const std::vector<std::string> channels{"R", "G", "B", "count.R"};
@@ -132,16 +124,14 @@ TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
 
     observed[0][1] = kNaN;  // where it is said to have been seen nine times
     write("a.exr", observed, channels);
-    EXPECT_EQ(compare("--scale").status, 1);
+    EXPECT_EQ(aphotic(compare("--scale")).status, 1);
 }
 
 TEST_F(CommandCompare, RefusesAScaleThatIsNone) {
     write("a.exr", times(kReference, {-1.0, -1.0, -1.0}));
     write("b.exr", kReference);
-    const CommandResult negative = compare("--scale");
-    EXPECT_EQ(negative.status, 2);
-    EXPECT_TRUE(has(negative.err, "positive"));
-    EXPECT_EQ(compare("--scale=twice").status, 2);
+    refused(compare("--scale"), "positive");
+    EXPECT_EQ(aphotic(compare("--scale=twice")).status, 2);
 }
 
 // Two images of three wavelengths each, of which one is in both.
@@ -151,14 +141,13 @@ TEST_F(CommandCompare, SaysNoToChannelsWithoutAPartner) {
     write("b.exr",
           {kReference[2], kReference[1], kReference[0]},
           {"S0.450,000000nm", shared, "S0.650,000000nm"});
-    const CommandResult result = compare("--report page.html");
-    EXPECT_EQ(result.status, 1);
+    const CommandResult result = done(compare("--report page.html"), "", kAnswerIsNo);
     for (const char* part : {"only in a.exr: S0.470,000000nm S0.620,000000nm\n",
                              "only in b.exr: S0.450,000000nm S0.650,000000nm\n",
                              "a.exr is within 0.0006 of b.exr\n",
                              "but 4 channels WITHOUT a partner"})
-        EXPECT_TRUE(contains(result.out, part)) << part << " is not in " << result.out;
-    EXPECT_TRUE(contains(text_of("page.html"), "S0.470,000000nm"));
+        EXPECT_TRUE(has(result.out, part));
+    EXPECT_TRUE(has(text_of("page.html"), "S0.470,000000nm"));
 
     const nlohmann::json json = json_of({}, 1);
     EXPECT_FALSE(json["holds"].get<bool>());
@@ -172,18 +161,16 @@ TEST_F(CommandCompare, ComparesTheChannelsThatAreNamed) {
     const std::string shared = "S0.550,000000nm";
     write("a.exr", {kReference[0], kReference[1], kReference[2]}, {"R", shared, "S0.470,000000nm"});
     write("b.exr", {kReference[0], kReference[1]}, {"R", shared});
-    EXPECT_EQ(compare({}).status, 1);
+    EXPECT_EQ(aphotic(compare({})).status, kAnswerIsNo);
     const nlohmann::json json = json_of(fmt::format("--channels R,{}", shared), 0);
     ASSERT_EQ(json["channels"].size(), 2U);
     EXPECT_EQ(json["channels"][1]["name"], shared) << "a name that holds a comma";
     EXPECT_EQ(json["only_in_image"].size(), 0U);
     EXPECT_EQ(json_of("--channels R", 0)["channels"].size(), 1U);
-    for (const char* names : {"S0.470,000000nm", "R,X", "", ","}) {
-        const CommandResult refused = compare({"--channels", names});
-        EXPECT_EQ(refused.status, 2) << names;
-    }
-    EXPECT_TRUE(contains(compare("--channels R,X").err,
-                         "--channels: found X; allowed: those of both images, R, " + shared));
+    for (const char* names : {"S0.470,000000nm", "R,X", "", ","})
+        refused(compare({"--channels", names}), "--channels: ");
+    refused(compare("--channels R,X"),
+            "--channels: found X; allowed: those of both images, R, " + shared);
 }
 
 // As the reference writer of the layout, pbrt and others spell them, in the order of their names.
@@ -211,14 +198,12 @@ TEST_F(CommandCompare, LeavesOpacityAsideWithAWord) {
     with_opacity.emplace_back(kPixels, 1.0F);
     write("a.exr", with_opacity, {"R", "G", "B", "A"});
     write("b.exr", kReference);
-    const CommandResult result = compare({});
-    EXPECT_EQ(result.status, 0) << result.out;
-    EXPECT_TRUE(contains(result.out, "left aside: A\n")) << result.out;
+    done(compare({}), "left aside: A\n");
     EXPECT_EQ(json_of({}, 0)["left_aside"], nlohmann::json({"A"}));
     // In both it is a channel like any other.
     with_opacity.back().front() = 0.5F;
     write("b.exr", with_opacity, {"R", "G", "B", "A"});
-    EXPECT_EQ(compare({}).status, 1);
+    EXPECT_EQ(aphotic(compare({})).status, kAnswerIsNo);
 }
 
 // One statistic, one name: that of validation.json.
@@ -235,9 +220,7 @@ TEST_F(CommandCompare, MeasuresPatchesWithOrWithoutAReference) {
     write("a.exr", times(kReference, {1.0, 1.0, 1.0}));
     write_file(path("p.csv"),
                "patch,x,y,w,h,reference\nmiddle,11,7,2,2,0.5\ncorner,0,0,2,2,0.5\nskin,4,4,1,1,\n");
-    const CommandResult alone = aphotic("compare a.exr --patches p.csv --json");
-    ASSERT_EQ(alone.status, 0) << alone.err;
-    const nlohmann::json patches = nlohmann::json::parse(alone.out)["patches"];
+    const nlohmann::json patches = json_by("compare a.exr --patches p.csv --json")["patches"];
     ASSERT_EQ(patches["patches"].size(), 3U);
     EXPECT_TRUE(patches["patches"][0].contains("degrees_from_grey"));
     EXPECT_TRUE(patches["patches"][0].contains("ciede2000"));
@@ -247,24 +230,20 @@ TEST_F(CommandCompare, MeasuresPatchesWithOrWithoutAReference) {
     const nlohmann::json both = json_of("--patches p.csv", 0);
     EXPECT_EQ(both["patches"], patches);
     EXPECT_TRUE(both.contains("channels"));
-    const CommandResult words = aphotic("compare a.exr --patches p.csv");
-    EXPECT_TRUE(contains(words.out, "degrees from grey: mean ")) << words.out;
+    done("compare a.exr --patches p.csv", "degrees from grey: mean ");
 }
 
 TEST_F(CommandCompare, NeedsAReferenceOrPatches) {
     write("a.exr", kReference);
-    const auto refused = [&](const Arguments& arguments, const std::string& why) {
-        const CommandResult result = aphotic("compare a.exr" + arguments);
-        EXPECT_EQ(result.status, 2);
-        EXPECT_TRUE(contains(result.err, why)) << result.err;
-    };
-    refused({}, "found no REFERENCE; allowed: an image to judge IMAGE by, or --patches");
-    refused("--encoding srgb", "--encoding requires --patches");
-    refused("--patches none.csv", "none.csv: cannot be read");
     write_file(path("p.csv"), "patch,x,y,w,h\na,20,0,9,9\n");
-    refused("--patches p.csv",
-            "p.csv:2: found a patch up to 29, 9; allowed: the image's 24 x 16 pixels");
-    refused("--patches p.csv --report r.html", "--report: found no REFERENCE");
+    for (const auto& [options, why] :
+         Cases{{{}, "found no REFERENCE; allowed: an image to judge IMAGE by, or --patches"},
+               {"--encoding srgb", "--encoding requires --patches"},
+               {"--patches none.csv", "none.csv: cannot be read"},
+               {"--patches p.csv",
+                "p.csv:2: found a patch up to 29, 9; allowed: the image's 24 x 16 pixels"},
+               {"--patches p.csv --report r.html", "--report: found no REFERENCE"}})
+        refused("compare a.exr" + options, why);
 }
 
 TEST_F(CommandCompare, LeavesAPageOfBoth) {
@@ -274,12 +253,12 @@ TEST_F(CommandCompare, LeavesAPageOfBoth) {
     observed.back()[5] = 0.0F;
     write("a.exr", observed, {"R", "G", "B", "count.G"});
     write("b.exr", kReference);
-    ASSERT_EQ(compare("--scale --report page.html").status, 0);
+    done(compare("--scale --report page.html"));
     const std::string page = text_of("page.html");
     EXPECT_EQ(first_unbalanced(page), "");
-    EXPECT_TRUE(contains(words_of(page), "a.exr\u2069 is within"));
+    EXPECT_TRUE(has(words_of(page), "a.exr\u2069 is within"));
     for (const char* part : {"id=\"row-R\"", "id=\"column-B\"", "data:image/png;base64,"})
-        EXPECT_TRUE(contains(page, part)) << part;
+        EXPECT_TRUE(has(page, part)) << part;
 }
 
 }  // namespace

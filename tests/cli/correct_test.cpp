@@ -12,8 +12,10 @@
 #include "rig/file/rig_reader.h"
 #include "support/absurd_images.h"
 #include "support/command_test.h"
+#include "support/exr_file.h"
 #include "support/has.h"
 #include "support/png.h"
+#include "support/scene_text.h"
 #include "support/tiff.h"
 #include "validation/tracer.h"
 
@@ -37,9 +39,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-constexpr int kAnswerIsNo = 1;
-constexpr int kBadInput = 2;
 
 constexpr int kWidth = 48;
 constexpr int kHeight = 36;
@@ -65,13 +64,10 @@ const Arguments kCorrect(
 class CorrectCommand : public CommandTest {
   protected:
     void SetUp() override {
-        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [48, 36]");
         // The same view in fewer pixels.
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 182.75");
-        write_file(path("rig.toml"), text);
+        write_file(path("rig.toml"),
+                   with(scene_text("habcam.toml"),
+                        {{"resolution", "[48, 36]"}, {"pixel_pitch_um", "182.75"}}));
         fs::create_directories(path("raw"));
     }
 
@@ -129,8 +125,7 @@ class CorrectCommand : public CommandTest {
         return sleds;
     }
 
-    [[nodiscard]] CommandResult correct(const Arguments& more,
-                                        const std::string& output = "out") const {
+    static Arguments correct(const Arguments& more, const std::string& output = "out") {
         Arguments arguments = kCorrect + ("-o " + output);
         // In place of the same option here.
         for (const std::string& option : more) {
@@ -138,26 +133,15 @@ class CorrectCommand : public CommandTest {
             const auto same = std::ranges::find(arguments, option);
             if (same != arguments.end()) arguments.erase(same, same + 2);
         }
-        arguments += more;
-        return aphotic(arguments);
+        return arguments + more;
     }
 
-    static std::vector<float> exr_samples(const fs::path& file,
-                                          const std::vector<std::string>& channels) {
-        ExrReader reader(file);
-        std::vector<float> samples(channels.size() * kPixels);
-        reader.read_rows(0, kHeight, channels, samples);
-        return samples;
-    }
-
-    // Every file below, with its bytes.
-    [[nodiscard]] std::map<std::string, std::string> files_in(const std::string& folder) const {
-        std::map<std::string, std::string> files;
-        for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
-            if (!entry.is_regular_file()) continue;
-            files[fs::relative(entry.path(), path(folder)).string()] = read_text_file(entry.path());
-        }
-        return files;
+    // Of images that are skipped, the reasons.
+    static std::map<std::string, std::string> skipped(const Json& summary) {
+        std::map<std::string, std::string> why;
+        for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
+        EXPECT_EQ(why.size(), summary["skipped"].size()) << "each once";
+        return why;
     }
 
     mutable double exposure_ = 0.0;
@@ -168,16 +152,14 @@ class CorrectCommand : public CommandTest {
 // again, up to half a step of the camera's whole numbers there.
 TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
     const std::vector<Sled> sleds = take_survey();
-    const CommandResult run = correct("--format exr --keep-mosaic --mask --edge-px 1 --json");
-    ASSERT_EQ(run.status, 0) << run.err;
-    const Json summary = Json::parse(run.out);
+    const Json summary = json_by(correct("--format exr --keep-mosaic --mask --edge-px 1 --json"));
     EXPECT_EQ(summary["corrected"], sleds.size());
     EXPECT_EQ(summary["gain_from"].size(), sleds.size());
     const PerChannel floor = floor_colour(rig_at(sleds[0]));
     for (std::size_t i = 0; i < sleds.size(); ++i) {
         const std::string name = std::to_string(i);
-        const std::vector<float> found = exr_samples(path("out/" + name + ".exr"), {"Y"});
-        const DecodedPng mask = decode_png(read_text_file(path("out/" + name + ".mask.png")));
+        const std::vector<float> found = read_exr(path("out/" + name + ".exr"), {"Y"});
+        const DecodedPng mask = decode_png(text_of("out/" + name + ".mask.png"));
         const std::vector<double> numbers = seen(sleds[i], 0.0);
         const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sleds[i])).mask(sleds[i], 1);
         std::size_t good = 0;
@@ -201,10 +183,8 @@ TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
 // How much light the middle has is not known of a gain by itself, so noise holds nothing then.
 TEST_F(CorrectCommand, AGainByItselfLeavesTheDarkToItsShare) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
-    const auto dark_share = [&](const Arguments& more, const std::string& output) {
-        const CommandResult run = correct("--format exr --json" + more, output);
-        EXPECT_EQ(run.status, 0) << run.err;
-        return Json::parse(run.out).at("doubtful").at("dark").get<double>();
+    const auto dark_share = [&](const Arguments& more, const std::string& output) -> double {
+        return json_by(correct("--format exr --json" + more, output))["doubtful"]["dark"];
     };
     EXPECT_EQ(dark_share("--gain 1", "one"), 0.0);
     EXPECT_GT(dark_share("--gain 1 --least-light 0.5", "half"), 0.0);
@@ -212,17 +192,14 @@ TEST_F(CorrectCommand, AGainByItselfLeavesTheDarkToItsShare) {
 
 TEST_F(CorrectCommand, TiffOfSixteenBitsHasThreeChannelsAndTheSourcesWords) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
-    ASSERT_EQ(correct({}).status, 0);
-    ASSERT_EQ(correct("--format exr", "exact").status, 0);
+    done(correct({}));
+    done(correct("--format exr", "exact"));
     // 1/65536 of white; the floor is 0.1 and more.
     constexpr const char* kStep = "1e-4";
-    const CommandResult same =
-        aphotic({"compare", "out/a.tif", "exact/a.exr", "--bound", kStep, "--black", "0.5"});
-    EXPECT_EQ(same.status, 0) << same.out << same.err;
-    EXPECT_TRUE(has(same.out, " B "));
+    done({"compare", "out/a.tif", "exact/a.exr", "--bound", kStep, "--black", "0.5"}, " B ");
     EXPECT_TRUE(has(text_of("out/a.tif"), "lat=41.5,lon=-70.6"));
     EXPECT_EQ(ExrReader(path("exact/a.exr")).attribute("comments"), "lat=41.5,lon=-70.6");
-    ASSERT_EQ(correct("--format png", "png").status, 0);
+    done(correct("--format png", "png"));
     EXPECT_EQ(decode_png(text_of("png/a.png")).width, kWidth);
 }
 
@@ -232,13 +209,12 @@ TEST_F(CorrectCommand, EveryCompressionIsLossless) {
     const auto file_of = [&](const std::string& name, const Arguments& compression) {
         const std::string format = name.substr(2) == "tif" ? "tiff" : name.substr(2);
         const std::string folder = format + (compression.empty() ? "" : "-" + compression.back());
-        EXPECT_EQ(correct(fmt::format("--format {}", format) + compression, folder).status, 0);
+        done(correct(fmt::format("--format {}", format) + compression, folder));
         return folder + "/" + name;
     };
     const auto expect_smaller = [&](const std::string& file, const std::string& plain) {
         EXPECT_LT(fs::file_size(path(file)), fs::file_size(path(plain))) << file;
-        const CommandResult same = aphotic(fmt::format("compare {} {} --bound 0", plain, file));
-        EXPECT_EQ(same.status, 0) << same.out << same.err;
+        done(fmt::format("compare {} {} --bound 0", plain, file));
     };
     for (const char* name : {"a.tif", "a.png", "a.exr"}) {
         const std::string plain = file_of(name, "--compression none");
@@ -261,17 +237,13 @@ TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
         pixels.push_back(byte(0) << 16U | byte(1) << 8U | byte(2));
     }
     write_file(path("raw/a.png"), png_of(pixels, kWidth, kHeight));
-    ExrWriter writer(path("raw/b.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
-    writer.write_rows(kHeight, std::vector<float>(planes.begin(), planes.end()));
-    writer.finish();
+    write_exr(path("raw/b.exr"), kWidth, std::vector<float>(planes.begin(), planes.end()));
     note("a.png", sled);
     note("b.exr", sled);
-    const CommandResult run =
-        aphotic("correct raw --rig rig.toml --nav nav.eic -o out --format exr --gain " +
-                fmt::format("{:.17g}", 1.0 / exposure_));
-    ASSERT_EQ(run.status, 0) << run.err;
-    const std::vector<float> a = exr_samples(path("out/a.exr"), {"R", "G", "B"});
-    const std::vector<float> b = exr_samples(path("out/b.exr"), {"R", "G", "B"});
+    done("correct raw --rig rig.toml --nav nav.eic -o out --format exr --gain " +
+         fmt::format("{:.17g}", 1.0 / exposure_));
+    const std::vector<float> a = read_exr(path("out/a.exr"));
+    const std::vector<float> b = read_exr(path("out/b.exr"));
     const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sled)).mask(sled, 1);
     std::size_t good = 0;
     for (std::size_t i = 0; i < b.size(); ++i) {
@@ -301,12 +273,10 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     for (const char* name : {"cut.tif", "rows.tif", "packed.tif", "words.png", "small.tif"})
         note(name, {2.0, 0.0, 0.0});
     note("low.tif", {0.0, 0.0, 0.0});
-    const CommandResult run = correct("--json");
-    EXPECT_EQ(run.status, kAnswerIsNo);
+    const CommandResult run = done(correct("--json"), "", kAnswerIsNo);
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], 4);
-    std::map<std::string, std::string> why;
-    for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
+    auto why = skipped(summary);
     EXPECT_EQ(why.size(), 7U) << summary.dump(2);
     for (const char* name : {"raw/rows.tif", "raw/packed.tif"})
         EXPECT_TRUE(has(why[name], "it is cut short"));
@@ -318,7 +288,7 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     for (const auto& [image, reason] : why) {
         EXPECT_TRUE(has(run.err, "aphotic: " + image + ": " + reason + "; skipped"));
     }
-    EXPECT_EQ(Json::parse(text_of("out/correction.json")), summary);
+    EXPECT_EQ(json_in("out/correction.json"), summary);
     const auto files = files_in("out");
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
 }
@@ -340,43 +310,37 @@ TEST_F(CorrectCommand, EndsWellWhenNoMoreAreSkippedThanAllowed) {
                                              {"--allow-skipped 0.19", kAnswerIsNo, 0},
                                              {"--allow-skipped 0.2", 0, 1},
                                              {"--allow-skipped 20%", 0, 1}}) {
-        const CommandResult run = correct(one.option);
+        const CommandResult run = aphotic(correct(one.option));
         const std::string about = testing::PrintToString(one.option);
         EXPECT_EQ(run.status, one.status) << about << run.err;
         const std::string said = fmt::format(
             "aphotic: 1 of 5 images skipped; allowed: {} (--allow-skipped)\n", one.allowed);
         EXPECT_TRUE(has(run.err, said)) << about;
     }
-    for (const char* wrong : {"-1", "some", "1.5", "101%", "", "3 images", "nan", "%"}) {
-        const CommandResult run = correct({"--allow-skipped", wrong});
-        EXPECT_EQ(run.status, kBadInput) << wrong;
-        const std::string said = fmt::format(
-            "--allow-skipped: found '{}'; allowed: a number of images, or a share such as 0.01 or "
-            "1%",
-            wrong);
-        EXPECT_TRUE(has(run.err, said));
+    for (const std::string wrong : {"-1", "some", "1.5", "101%", "", "3 images", "nan", "%"}) {
+        refused(correct({"--allow-skipped", wrong}),
+                "--allow-skipped: found '" + wrong +
+                    "'; allowed: a number of images, or a share such as 0.01 or 1%");
     }
 }
 
 // The same floor in another dive, at half the exposure: by one gain it is half as bright.
 TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     const std::vector<Sled> sleds = take_survey();
-    ASSERT_EQ(correct("--format exr", "one").status, 0);
+    done(correct("--format exr", "one"));
     fs::rename(path("raw"), path("raw-one"));
     fs::create_directories(path("raw"));
     exposure_ /= 2.0;
     take("second.tif", sleds[0]);
-    const CommandResult run = correct("--format exr --gain-from one --strict", "two");
-    ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_TRUE(has(run.out, ", that of one"));
+    done(correct("--format exr --gain-from one --strict", "two"), ", that of one");
     const auto notes = [&](const std::string& folder) {
-        return Json::parse(text_of(folder + "/correction.json"));
+        return json_in(folder + "/correction.json");
     };
     EXPECT_EQ(notes("two")["gain"], notes("one")["gain"]);
     EXPECT_EQ(notes("two")["settings"]["middle"], notes("one")["settings"]["middle"]);
     EXPECT_EQ(notes("two")["gain_folder"], "one");
-    const std::vector<float> one = exr_samples(path("one/0.exr"), {"R", "G", "B"});
-    const std::vector<float> two = exr_samples(path("two/second.exr"), {"R", "G", "B"});
+    const std::vector<float> one = read_exr(path("one/0.exr"));
+    const std::vector<float> two = read_exr(path("two/second.exr"));
     const std::size_t middle = kPixels / 2 + kWidth / 2;
     for (std::size_t c = 0; c < kChannels; ++c) {
         const std::size_t i = c * kPixels + middle;
@@ -387,50 +351,43 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     // Another rig is told of, with --strict refused; another camera is refused.
     const std::string rig = text_of("rig.toml");
     write_file(path("rig.toml"), rig + "# of the second dive\n");
-    const CommandResult other = correct("--gain-from one", "three");
-    EXPECT_EQ(other.status, 0) << other.err;
-    EXPECT_TRUE(has(other.err, "looks wrong: gain-from: one: the rig there is another"));
+    EXPECT_TRUE(has(done(correct("--gain-from one", "three")).err,
+                    "looks wrong: gain-from: one: the rig there is another"));
     EXPECT_EQ(notes("three")["looks_wrong"][0]["about"], "gain-from");
-    EXPECT_EQ(correct("--gain-from one --strict", "three").status, kBadInput);
+    EXPECT_EQ(aphotic(correct("--gain-from one --strict", "three")).status, kBadInput);
     write_file(path("rig.toml"), rig);
-    const CommandResult levels = correct("--gain-from one --black-level 1", "levels");
+    const CommandResult levels = aphotic(correct("--gain-from one --black-level 1", "levels"));
     EXPECT_TRUE(has(levels.err, "looks wrong: gain-from: one: the black_level there is "));
     EXPECT_TRUE(has(levels.err, ", here 1.0"));
     write_file(path("camera.csv"),
                "wavelength_nm,red,green,blue\n380,0.1,0.2,0.4\n780,0.3,0.2,0.1\n");
-    write_file(
-        path("rig.toml"),
-        std::regex_replace(
-            rig, std::regex("\"nikon-d5100\""), R"({ table = "camera.csv", kind = "energy" })"));
-    const auto refused = [&](const Arguments& options, const std::string& why) {
-        const CommandResult wrong = correct(options, "four");
-        EXPECT_EQ(wrong.status, kBadInput) << wrong.out;
-        EXPECT_TRUE(has(wrong.err, why));
-        EXPECT_FALSE(fs::exists(path("four")));
-    };
-    refused("--gain-from one",
+    write_file(path("rig.toml"),
+               with(rig, {{"response", R"({ table = "camera.csv", kind = "energy" })"}}));
+    refused(correct("--gain-from one", "four"),
             "--gain-from: one: the rig there has a camera with another response; allowed: results "
             "of the same camera");
     write_file(path("rig.toml"), rig);
-    refused("--gain-from raw",
-            "--gain-from: raw: holds no correction.json; allowed: a folder that correct wrote");
-    fs::create_directories(path("broken"));
-    write_file(path("broken/correction.json"), R"({"gain": [1, 0, 1]})");
-    refused("--gain-from broken",
-            "--gain-from: broken: correction.json: tells of no gain; allowed: as correct wrote it");
-    write_file(path("broken/correction.json"), "no notes");
-    refused("--gain-from broken", "--gain-from: broken: correction.json: is not JSON");
-    refused("--gain-from one --gain 2", "--gain");
-    refused("--gain-from one --middle 0.2", "--middle");
+    for (const char* folder : {"no-gain", "no-json"}) fs::create_directories(path(folder));
+    write_file(path("no-gain/correction.json"), R"({"gain": [1, 0, 1]})");
+    write_file(path("no-json/correction.json"), "no notes");
+    for (const auto& [options, why] : Cases{
+             {"raw",
+              "--gain-from: raw: holds no correction.json; allowed: a folder that correct wrote"},
+             {"no-gain",
+              "--gain-from: no-gain: correction.json: tells of no gain; allowed: as correct wrote "
+              "it"},
+             {"no-json", "--gain-from: no-json: correction.json: is not JSON"},
+             {"one --gain 2", "--gain"},
+             {"one --middle 0.2", "--middle"}})
+        refused(correct("--gain-from" + options, "four"), why);
 }
 
 // By the standard's formula from the linear result, the matrix and the exposure that are noted.
 TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
     take_survey();
-    const CommandResult run = correct("--encode srgb --format png --bits 16 --json", "png");
-    ASSERT_EQ(run.status, 0) << run.err;
-    ASSERT_EQ(correct("--format exr", "exr").status, 0);
-    const Json srgb = Json::parse(run.out).at("srgb");
+    const Json srgb =
+        json_by(correct("--encode srgb --format png --bits 16 --json", "png")).at("srgb");
+    done(correct("--format exr", "exr"));
     EXPECT_GT(srgb["mean_delta_e"].get<double>(), 0.0);
     EXPECT_LT(srgb["largest_delta_e"].get<double>(), 20.0);
     const PerChannel floor = floor_colour(rig_at({2.0, 0.0, 0.0}));
@@ -450,7 +407,7 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
     }
     const double exposure = srgb["exposure"].get<double>();
     EXPECT_NEAR(exposure, 0.2 / middle, 1e-9);
-    const std::vector<float> linear = exr_samples(path("exr/0.exr"), {"R", "G", "B"});
+    const std::vector<float> linear = read_exr(path("exr/0.exr"));
     const DecodedPng shown = decode_png(text_of("png/srgb/0.png"));
     ASSERT_EQ(shown.width, kWidth);
     for (std::size_t p = 0; p < kPixels; ++p) {
@@ -474,9 +431,7 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
 TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
     const auto made = [&](const Arguments& format, const std::string& folder) {
-        const CommandResult run = correct("--encode srgb" + format, folder);
-        EXPECT_EQ(run.status, 0) << run.err;
-        EXPECT_TRUE(has(run.out, "sRGB in " + folder + "/srgb: exposure "));
+        done(correct("--encode srgb" + format, folder), "sRGB in " + folder + "/srgb: exposure ");
         return files_in(folder);
     };
     EXPECT_TRUE(made({}, "jpeg").contains("srgb/a.jpg"));
@@ -492,11 +447,8 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
               files_in("jpeg").at("srgb/a.jpg").size());
     // JPEG blurs colours over 2 x 2 pixels: at the patch's rim by up to half of its own
     // step, 1.5-fold and some 1.2-fold once encoded.
-    const CommandResult same =
-        aphotic("compare jpeg/srgb/a.jpg png/srgb/a.png --bound 0.2 --black 0.5");
-    EXPECT_EQ(same.status, 0) << same.out << same.err;
-    const CommandResult depth = aphotic("compare tiff/srgb/a.tif png/srgb/a.png --bound 0");
-    EXPECT_EQ(depth.status, 0) << depth.out << depth.err;
+    done("compare jpeg/srgb/a.jpg png/srgb/a.png --bound 0.2 --black 0.5");
+    done("compare tiff/srgb/a.tif png/srgb/a.png --bound 0");
 
     // Exif's ColorSpace, tag 0xA001, one short number, is 1 for sRGB; in either order of bytes. A
     // PNG has a chunk of that name.
@@ -514,8 +466,7 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
 
     // Repeated, all is kept; without its JPEG, an image is made again.
     const auto again = [&] {
-        const CommandResult run = correct("--encode srgb --json", "jpeg");
-        return Json::parse(run.out)["kept"].get<int>();
+        return json_by(correct("--encode srgb --json", "jpeg"))["kept"].get<int>();
     };
     EXPECT_EQ(again(), 1);
     fs::remove(path("jpeg/srgb/a.jpg"));
@@ -524,7 +475,7 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
 
     // Brighter by a stop.
     const auto exposure = [&](const std::string& folder) {
-        return Json::parse(text_of(folder + "/correction.json"))["srgb"]["exposure"].get<double>();
+        return json_in(folder + "/correction.json")["srgb"]["exposure"].get<double>();
     };
     made("--stops 1", "bright");
     EXPECT_NEAR(exposure("bright") / exposure("jpeg"), 2.0, 1e-12);
@@ -534,11 +485,7 @@ TEST_F(CorrectCommand, WhatCannotBeEncodedIsRefused) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
     fs::create_directories(path("raw/srgb"));
     fs::copy(path("raw/a.tif"), path("raw/srgb/a.tif"));
-    struct Case {
-        Arguments options;
-        std::string why;
-    };
-    for (const Case& one : std::vector<Case>{
+    for (const auto& [options, why] : Cases{
              {"--format jpeg",
               "--format: found jpeg, which holds no linear image; allowed: tiff, png, exr, or jpeg "
               "with --encode srgb"},
@@ -552,23 +499,17 @@ TEST_F(CorrectCommand, WhatCannotBeEncodedIsRefused) {
              {"--encode srgb --stops nan", "--stops: found nan; allowed: a number"},
              {"--encode adobe", "--encode: adobe not in {linear,srgb}"},
              {"--encode srgb --format tiff",
-              "raw/a.tif and raw/srgb/a.tif would both become out/srgb/a.tif"}}) {
-        const CommandResult run = correct(one.options);
-        EXPECT_EQ(run.status, kBadInput) << run.out;
-        EXPECT_TRUE(has(run.err, one.why)) << one.why;
-        EXPECT_FALSE(fs::exists(path("out")));
-    }
+              "raw/a.tif and raw/srgb/a.tif would both become out/srgb/a.tif"}})
+        refused(correct(options), why);
 }
 
 // 2 may have been 2.55; the images cannot tell, but whoever copied the file can.
 TEST_F(CorrectCommand, ACutNavigationIsWarnedOf) {
     take("a.tif", {2.0, 0.0, 0.0});
     write_file(path("nav.eic"), "image,pitch_deg,roll_deg,altitude_m\na.tif,0,0,2");
-    const CommandResult run = correct({});
-    EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_TRUE(has(run.err, "looks wrong: navigation: nav.eic:2: the file ends within this line"));
-    const CommandResult strict = correct("--strict");
-    EXPECT_EQ(strict.status, kBadInput) << strict.err;
+    EXPECT_TRUE(has(done(correct({})).err,
+                    "looks wrong: navigation: nav.eic:2: the file ends within this line"));
+    refused(correct("--strict"), "navigation: nav.eic:2");
 }
 
 // Numbers that the images contradict: a warning, with --strict an error, and no gain that outlives
@@ -582,10 +523,9 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     const std::string right = lines_;
     const auto told = [&](const std::string& navigation, const Arguments& more) {
         write_file(path("nav.eic"), navigation);
-        const CommandResult run = correct(more);
-        EXPECT_EQ(run.status, 0) << run.err;
+        const CommandResult run = done(correct(more));
         std::string about;
-        const Json notes = Json::parse(text_of("out/correction.json"));
+        const Json notes = json_in("out/correction.json");
         for (const Json& one : notes["looks_wrong"]) {
             about += one["about"];
             EXPECT_TRUE(has(run.err,
@@ -605,10 +545,7 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     };
     const std::string high = changed(50.0, 1.0);
     write_file(path("nav.eic"), high);
-    const CommandResult refused = correct("--strict");
-    EXPECT_EQ(refused.status, kBadInput);
-    EXPECT_TRUE(has(refused.err, "--strict: suspicious survey: altitude: "));
-    EXPECT_FALSE(fs::exists(path("out")));
+    refused(correct("--strict"), "--strict: suspicious survey: altitude: ");
 
     EXPECT_EQ(told(high, {}), "altitude");
     EXPECT_EQ(told(right, "--strict"), "") << "the gain is taken anew";
@@ -616,7 +553,7 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     // Given again, with a gain that is kept.
     const std::string notes = text_of("out/correction.json");
     write_file(path("nav.eic"), high);
-    EXPECT_EQ(correct("--strict").status, kBadInput);
+    EXPECT_EQ(aphotic(correct("--strict")).status, kBadInput);
     EXPECT_EQ(text_of("out/correction.json"), notes);
     EXPECT_EQ(told(high, {}), "altitude");
     EXPECT_EQ(told(high, "--gain-images 3"), "altitude");
@@ -635,9 +572,7 @@ TEST_F(CorrectCommand, OptionsOfNavigationReachItsReader) {
     take("20240309.120000000.1.tif", {2.0, 0.0, 0.0});
     write_file(path("track.csv"), "timestamp,alt,theta\n1709989200,1.5,0\n1709989203,1.5,0\n");
     const auto corrected = [&](const Arguments& options) {
-        const CommandResult run = correct("--nav track.csv --json" + options);
-        EXPECT_EQ(run.status, 0) << run.err;
-        return Json::parse(run.out);
+        return json_by(correct("--nav track.csv --json" + options));
     };
     const Arguments all =
         "--columns altitude_m=alt,pitch_deg=theta --angles-in rad --altitude-is nearest "
@@ -664,25 +599,20 @@ TEST_F(CorrectCommand, TheFirstImageThatCannotBeReadIsNamed) {
                           : "no image");
         note(name, {2.0, 0.0, 0.0});
     }
-    const CommandResult run = correct("--jobs 8");
-    EXPECT_EQ(run.status, kBadInput);
-    EXPECT_TRUE(has(run.err,
-                    "none of the 16 images looked at can be corrected; 00: found 1024 x "
-                    "1024 pixels"));
+    refused(correct("--jobs 8"),
+            "none of the 16 images looked at can be corrected; 00: found 1024 x 1024 pixels");
 }
 
 // What was noted is believed only as far as it makes sense: the rest is done again.
 TEST_F(CorrectCommand, NotesEditedByHandSpoilNothing) {
     take_survey();
-    ASSERT_EQ(correct({}).status, 0);
+    done(correct({}));
     const std::string journal = text_of("out/corrected.jsonl");
     const std::string notes = text_of("out/correction.json");
     const auto after = [&](const std::string& edited_journal, const std::string& edited_notes) {
         write_file(path("out/corrected.jsonl"), edited_journal);
         write_file(path("out/correction.json"), edited_notes);
-        const CommandResult run = correct("--json");
-        EXPECT_EQ(run.status, 0) << run.err;
-        const Json summary = Json::parse(run.out);
+        const Json summary = json_by(correct("--json"));
         EXPECT_EQ(summary["gain"], Json::parse(notes)["gain"]);
         EXPECT_EQ(summary["doubtful"], Json::parse(notes)["doubtful"]);
         return summary["corrected"].get<int>();
@@ -714,7 +644,7 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
         note(name, {2.0 + 0.01 * i, 0.0, 0.0});
     }
     const Arguments settings("--mask --gain-images 4 --jobs 2");
-    ASSERT_EQ(correct(settings, "whole").status, 0);
+    done(correct(settings, "whole"));
     {
         Process process({.executable = APHOTIC_COMMAND,
                          .arguments = kCorrect + ("-o out" + settings),
@@ -731,9 +661,7 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
         }
     }  // killed
     abandon(path("out/more07.tif"));
-    const CommandResult again = correct(settings + "--json");
-    ASSERT_EQ(again.status, 0) << again.err;
-    const Json summary = Json::parse(again.out);
+    const Json summary = json_by(correct(settings + "--json"));
     EXPECT_GE(summary["kept"], 1);
     EXPECT_EQ(summary["kept"].get<int>() + summary["corrected"].get<int>(), kMore + 4);
     auto whole = files_in("whole");
@@ -751,17 +679,14 @@ TEST_F(CorrectCommand, APoseWithAStrobeUnderTheFloorIsSkipped) {
     take_survey();
     fs::copy_file(path("raw/0.tif"), path("raw/tilted.tif"));
     note("tilted.tif", {0.02, 30.0 * kDegree, 0.0});
-    const CommandResult run = correct("--json");
-    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
-    const Json summary = Json::parse(run.out);
+    const Json summary = json_by(correct("--json"), kAnswerIsNo);
     EXPECT_EQ(summary["corrected"], 4);
     EXPECT_EQ(summary["gain_from"].size(), 4U);
-    ASSERT_EQ(summary["skipped"].size(), 1U);
-    EXPECT_EQ(summary["skipped"][0]["image"], "raw/tilted.tif");
-    EXPECT_EQ(
-        summary["skipped"][0]["why"],
-        "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' stands 0.2327 m under the sea "
-        "floor; allowed: at least 0.001 m over it");
+    const std::map<std::string, std::string> why{
+        {"raw/tilted.tif",
+         "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' stands 0.2327 m under the sea "
+         "floor; allowed: at least 0.001 m over it"}};
+    EXPECT_EQ(skipped(summary), why);
 }
 
 // A name that leads nowhere when its turn comes, be it a link or a file that went meanwhile, and a
@@ -775,12 +700,9 @@ TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
     for (const char* name : {"gone.tif", "itself.tif", "pipe.tif", "named.tif"}) {
         note(name, {2.0, 0.0, 0.0});
     }
-    const CommandResult run = correct("named.tif --json --gain 1");
-    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
-    const Json summary = Json::parse(run.out);
+    const Json summary = json_by(correct("named.tif --json --gain 1"), kAnswerIsNo);
     EXPECT_EQ(summary["corrected"], 4);
-    std::map<std::string, std::string> why;
-    for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
+    auto why = skipped(summary);
     EXPECT_EQ(why.size(), 4U) << summary.dump(2);
     EXPECT_EQ(why["raw/gone.tif"], "found a link that leads nowhere; allowed: a file");
     EXPECT_EQ(why["raw/itself.tif"], "found a link that leads nowhere; allowed: a file");
@@ -806,13 +728,10 @@ TEST_F(CorrectCommand, AnImageThatVanishesMeanwhileIsOneThatIsSkipped) {
         }
         fs::remove(path(last));
     });
-    const CommandResult run = correct("--json --gain 1 --jobs 1");
-    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
-    const Json summary = Json::parse(run.out);
+    const Json summary = json_by(correct("--json --gain 1 --jobs 1"), kAnswerIsNo);
     EXPECT_EQ(summary["corrected"], kMany - 1);
-    ASSERT_EQ(summary["skipped"].size(), 1U);
-    EXPECT_EQ(summary["skipped"][0]["image"], last);
-    EXPECT_EQ(summary["skipped"][0]["why"], "there is no such file any more");
+    const std::map<std::string, std::string> why{{last, "there is no such file any more"}};
+    EXPECT_EQ(skipped(summary), why);
 }
 
 // One map for all: here the rig's own, so that the results are the same.
@@ -822,18 +741,15 @@ TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
     const Tracer tracer(rig_at(sled), {.signals = true, .planes_nm = {}, .threads = 1});
     std::vector<double> map = tracer.rows(0, kHeight);
     map[100] = std::numeric_limits<double>::quiet_NaN();  // as where nothing was observed
-    ExrWriter writer(path("map.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
-    writer.write_rows(kHeight, std::vector<float>(map.begin(), map.end()));
-    writer.finish();
+    write_exr(path("map.exr"), kWidth, std::vector<float>(map.begin(), map.end()));
     const Arguments common("--format exr --keep-mosaic --gain 0.001");
-    ASSERT_EQ(correct(common, "by-rig").status, 0);
-    const CommandResult run = aphotic(
+    done(correct(common, "by-rig"));
+    done(
         "correct raw --map map.exr -o by-map --bayer GRBG --black-level 60 --white-level 4095 "
         "--middle 0.3 --mask" +
         common);
-    ASSERT_EQ(run.status, 0) << run.err;
-    const std::vector<float> by_map = exr_samples(path("by-map/a.exr"), {"Y"});
-    const std::vector<float> by_rig = exr_samples(path("by-rig/a.exr"), {"Y"});
+    const std::vector<float> by_map = read_exr(path("by-map/a.exr"), {"Y"});
+    const std::vector<float> by_rig = read_exr(path("by-rig/a.exr"), {"Y"});
     const DecodedPng mask = decode_png(text_of("by-map/a.mask.png"));
     const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sled)).mask(sled, 1);
     for (std::size_t p = 0; p < kPixels; ++p) {
@@ -846,45 +762,35 @@ TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
 
 TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     take("a.tif", {2.0, 0.0, 0.0});
-    const auto refused = [&](const Arguments& arguments, const std::string& part) {
-        const CommandResult run = aphotic("correct" + arguments);
-        EXPECT_EQ(run.status, kBadInput) << part;
-        EXPECT_EQ(run.out, "") << part;
-        EXPECT_TRUE(has(run.err, part));
-        EXPECT_FALSE(fs::exists(path("out"))) << part;
-    };
-    const Arguments rig("--rig rig.toml --nav nav.eic");
-    const auto with = [&](Arguments arguments) {
-        arguments += rig;
-        return arguments;
-    };
-    refused("raw -o out", "--rig with --nav, or --map");
-    refused("raw -o out --rig rig.toml", "--rig and --nav go together");
-    refused(with("rew -o out"), "rew: there is no such file or folder");
-    refused(with("raw raw/a.tif -o out"), "would both become out/a");
-    refused(with("raw -o out --bayer RGB"), "--bayer: found 'RGB'");
-    refused(with("raw -o out --gain 1,2"), "--gain: found 2 numbers");
-    refused(with("raw -o out --compression lzw"), "--compression");
-    refused(with("raw -o out --altitudes-m 4,1"), "--altitude: found 4,1");
-    refused(with("raw/a.tif -o raw"), "would be overwritten by the result");
-    write_file(path("raw/a.mask.png"), "an image of the user's");
-    refused(with("raw/a.tif raw/a.mask.png -o raw --format exr --mask"),
-            "raw/a.mask.png: would be overwritten by the result");
-    fs::remove(path("raw/a.mask.png"));
-    refused(with("raw -o raw"), "found the folder to write to");
-    refused("raw -o out --map none.exr", "none.exr");
-    fs::create_directories(path("dark"));
+    refused("correct raw -o out", "--rig with --nav, or --map");
+    refused("correct raw -o out --rig rig.toml", "--rig and --nav go together");
+    refused("correct raw -o out --map none.exr", "none.exr");
+    for (const char* folder : {"mine", "dark", "empty"}) fs::create_directories(path(folder));
+    for (const char* name : {"mine/a.tif", "mine/a.mask.png"})
+        write_file(path(name), "an image of the user's");
     const std::vector<std::uint16_t> black(kPixels, static_cast<std::uint16_t>(kBlackLevel));
     write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
-    refused(with("dark -o out --bayer GRBG --black-level 60"),
-            "no gain can be taken from these images");
-    refused(with("raw -o out"),
-            "the only image looked at cannot be corrected; a: found one channel and no --bayer; "
-            "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono");
-    fs::create_directories(path("empty"));
-    refused(with("empty -o out"), "empty: the folder holds no image");
+    const Arguments by_rig("correct --rig rig.toml --nav nav.eic");
+    for (const auto& [options, why] : Cases{
+             {"rew -o out", "rew: there is no such file or folder"},
+             {"raw raw/a.tif -o out", "would both become out/a"},
+             {"raw -o out --bayer RGB", "--bayer: found 'RGB'"},
+             {"raw -o out --gain 1,2", "--gain: found 2 numbers"},
+             {"raw -o out --compression lzw", "--compression"},
+             {"raw -o out --altitudes-m 4,1", "--altitude: found 4,1"},
+             {"raw/a.tif -o raw", "would be overwritten by the result"},
+             {"mine/a.tif mine/a.mask.png -o mine --format exr --mask",
+              "mine/a.mask.png: would be overwritten by the result"},
+             {"raw -o raw", "found the folder to write to"},
+             {"dark -o out --bayer GRBG --black-level 60",
+              "no gain can be taken from these images"},
+             {"raw -o out",
+              "the only image looked at cannot be corrected; a: found one channel and no --bayer; "
+              "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono"},
+             {"empty -o out", "empty: the folder holds no image"}})
+        refused(by_rig + options, why);
     write_file(path("nav.eic"), "a.tif two 0 0\n");
-    refused(with("raw -o out"), "nav.eic:1: altitude_m: found 'two'; allowed: a number");
+    refused(by_rig + "raw -o out", "nav.eic:1: altitude_m: found 'two'; allowed: a number");
 }
 
 // Poses and results by an iFDO alone: heights are plumb, so pitch and roll count.
@@ -901,22 +807,18 @@ TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
             {"image-camera-roll-degrees", sled.roll_rad / kDegree}};
     }
     write_file(path("set.json"), set.dump());
-    ASSERT_EQ(correct({}).status, 0);
-    const CommandResult by_ifdo = correct("--nav set.json --ifdo set.json", "by-ifdo");
-    ASSERT_EQ(by_ifdo.status, 0) << by_ifdo.err;
-    const Json results = Json::parse(text_of("by-ifdo/set.json"));
+    done(correct({}));
+    done(correct("--nav set.json --ifdo set.json", "by-ifdo"));
+    const Json results = json_in("by-ifdo/set.json");
     EXPECT_EQ(results["image-set-header"]["image-set-name"], "a survey");
     EXPECT_EQ(results["image-set-header"]["image-quality"], "processed");
     ASSERT_EQ(results["image-set-items"].size(), 4U);
     for (const auto& [name, item] : results["image-set-items"].items()) {
         EXPECT_EQ(item["image-hash-sha256"], sha256_of_file(path("by-ifdo/" + name)));
-        EXPECT_EQ(read_text_file(path("by-ifdo/" + name)), read_text_file(path("out/" + name)));
+        EXPECT_EQ(text_of("by-ifdo/" + name), text_of("out/" + name));
     }
     write_file(path("set.json"), R"({"image-set-header": {}})");
-    const CommandResult none = correct("--ifdo set.json", "none");
-    EXPECT_EQ(none.status, kBadInput);
-    EXPECT_TRUE(has(none.err, "set.json: image-set-items: found none"));
-    EXPECT_FALSE(fs::exists(path("none")));
+    refused(correct("--ifdo set.json", "none"), "set.json: image-set-items: found none");
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 // by SIGINT, SIGTERM and SIGKILL. Nothing is left half written or running, and the
 // same command given again ends in the same files.
 #include "base/sha256.h"
+#include "support/command_test.h"
 #include "support/command_under_way.h"
-#include "support/run_command.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -72,14 +72,13 @@ std::map<std::string, std::string> results_in(const fs::path& folder) {
     return results;
 }
 
-class InterruptedCommand : public testing::TestWithParam<Struck> {
+class InterruptedCommand : public CommandTest, public testing::WithParamInterface<Struck> {
   protected:
     void SetUp() override {
-        home_ = fs::canonical(folder_.path());
-        write_file(home_ / "rig.toml",
-                   small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
+        home_ = fs::canonical(home_);
+        write_file(path("rig.toml"), small_scene("habcam.toml"));
         const std::string& command = GetParam().arguments.front();
-        if (command == "integrate") well("render rig.toml -o render --bands 3");
+        if (command == "integrate") done("render rig.toml -o render --bands 3");
         if (command == "observe" || command == "baseline" || command == "compare" ||
             command == "correct")
             take_images();
@@ -88,56 +87,48 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
     }
 
     void clear(const char* folder) {
-        fs::remove_all(home_ / folder);
-        fs::create_directory(home_ / folder);
-    }
-
-    void well(const Arguments& arguments) {
-        const CommandResult run = run_aphotic(home_, arguments);
-        ASSERT_EQ(run.status, 0) << run.err;
+        fs::remove_all(path(folder));
+        fs::create_directory(path(folder));
     }
 
     void take_images() {
         constexpr int kImages = 12;
-        fs::create_directory(home_ / "raw");
-        well("lightmap rig.toml -o raw/0.exr");
+        fs::create_directory(path("raw"));
+        done("lightmap rig.toml -o raw/0.exr");
         std::string lines;
         for (int i = 0; i < kImages; ++i) {
-            if (i > 0) fs::copy_file(home_ / "raw/0.exr", home_ / fmt::format("raw/{}.exr", i));
+            if (i > 0) fs::copy_file(path("raw/0.exr"), home_ / fmt::format("raw/{}.exr", i));
             lines += fmt::format("{}.exr 2 0 0\n", i);
         }
-        write_file(home_ / "nav.eic", lines);
+        write_file(path("nav.eic"), lines);
     }
 
     // Whether it was struck before it ended.
     bool strike(double delay_s, int signal) {
-        Command command(home_, GetParam().arguments, {{"TMPDIR", (home_ / "tmp").string()}});
+        Command command(home_, GetParam().arguments, {{"TMPDIR", path("tmp").string()}});
         const auto moment = Clock::now() + std::chrono::duration<double>(delay_s);
         while (Clock::now() < moment && !command.has_ended()) std::this_thread::sleep_for(kPoll);
         if (!command.has_ended()) ::kill(command.pid(), signal);
         const int status = command.wait();
-        EXPECT_TRUE(status == 0 || status == 128 + signal) << read_text_file(home_ / "stderr");
+        EXPECT_TRUE(status == 0 || status == 128 + signal) << text_of("stderr");
         expect_no_process_in(home_);
         if (status != 128 + SIGKILL) {
-            EXPECT_TRUE(fs::is_empty(home_ / "tmp")) << "left in TMPDIR";
-            expect_no_leftovers(home_ / "out", fmt::format("-{}", command.pid()));
+            EXPECT_TRUE(fs::is_empty(path("tmp"))) << "left in TMPDIR";
+            expect_no_leftovers(path("out"), fmt::format("-{}", command.pid()));
         }
         clear("tmp");
         if (status == 0) clear("out");  // it came too late: the next begins afresh
         return status != 0;
     }
-
-    TempFolder folder_;
-    fs::path home_;
 };
 
 TEST_P(InterruptedCommand, GivenAgainEndsInTheSameFiles) {
     const unsigned seed = seed_of_this_run();
     fmt::print("seed {} (APHOTIC_TEST_SEED)\n", seed);
     const auto start = Clock::now();
-    ASSERT_NO_FATAL_FAILURE(well(GetParam().arguments));
+    done(GetParam().arguments);
     const double whole_s = std::chrono::duration<double>(Clock::now() - start).count();
-    const auto expected = results_in(home_ / "out");
+    const auto expected = results_in(path("out"));
     ASSERT_FALSE(expected.empty());
     clear("out");
 
@@ -148,8 +139,8 @@ TEST_P(InterruptedCommand, GivenAgainEndsInTheSameFiles) {
         struck += strike(std::uniform_real_distribution(0.0, whole_s)(random), signal) ? 1 : 0;
     }
     EXPECT_GT(struck, 0);
-    ASSERT_NO_FATAL_FAILURE(well(GetParam().arguments));
-    EXPECT_EQ(results_in(home_ / "out"), expected);
+    done(GetParam().arguments);
+    EXPECT_EQ(results_in(path("out")), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(All,

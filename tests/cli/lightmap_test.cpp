@@ -4,7 +4,8 @@
 #include "image/exr.h"
 #include "spectral/integrator.h"
 #include "support/command_test.h"
-#include "support/has.h"
+#include "support/exr_file.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,39 +13,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
-#include <set>
 
 namespace aphotic::lightmap_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBadInput = 2;
-constexpr int kRunFailed = 3;
 // --error by default, and the rounding of floats.
 constexpr double kError = 1.1e-5;
 
 class CommandLightmap : public CommandTest {
   protected:
     void SetUp() override {
-        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [160, 120]");
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 55.0");
-        write_file(path("rig.toml"), text);
+        write_file(path("rig.toml"),
+                   with(scene_text("habcam.toml"),
+                        {{"resolution", "[160, 120]"}, {"pixel_pitch_um", "55.0"}}));
     }
 
-    [[nodiscard]] CommandResult lightmap(const Arguments& options = {}) const {
-        return aphotic("lightmap rig.toml -o map.exr" + options);
+    static Arguments lightmap(const Arguments& options = {}) {
+        return "lightmap rig.toml -o map.exr" + options;
     }
 
     [[nodiscard]] std::vector<float> samples(const std::vector<std::string>& channels) const {
-        ExrReader reader(path("map.exr"));
-        std::vector<float> all(channels.size() * 160 * 120);
-        reader.read_rows(0, reader.height_px(), channels, all);
-        return all;
+        return read_exr(path("map.exr"), channels);
     }
 };
 
@@ -60,19 +51,15 @@ void expect_equal(const std::vector<float>& found, const std::vector<float>& wan
 }
 
 TEST_F(CommandLightmap, IsWhatTheReferenceTraces) {
-    const CommandResult run = lightmap("--pitch-deg -3 --altitude-m 1.7");
-    ASSERT_EQ(run.status, 0) << run.err;
-    std::string text = text_of("rig.toml");
-    text = std::regex_replace(text, std::regex("pitch_deg  = 5.0"), "pitch_deg = -3.0");
-    text = std::regex_replace(text, std::regex("altitude_m = 2.0"), "altitude_m = 1.7");
-    write_file(path("other.toml"), text);
-    const CommandResult trace = aphotic("trace other.toml -o traced --wavelengths 550");
-    ASSERT_EQ(trace.status, 0) << trace.err;
-    expect_equal(samples({"R", "G", "B"}), read_signals(path("traced") / "image.exr").samples);
+    done(lightmap("--pitch-deg -3 --altitude-m 1.7"));
+    write_file(path("other.toml"),
+               with(text_of("rig.toml"), {{"pitch_deg", "-3.0"}, {"altitude_m", "1.7"}}));
+    done("trace other.toml -o traced --wavelengths 550");
+    expect_equal(samples({"R", "G", "B"}), read_signals(path("traced/image.exr")).samples);
 }
 
 TEST_F(CommandLightmap, PartsAddUpToTheWhole) {
-    ASSERT_EQ(lightmap("--per-strobe --per-cone --normalised").status, 0);
+    done(lightmap("--per-strobe --per-cone --normalised"));
     std::vector<double> by_strobe(std::size_t{160} * 120);
     std::vector<double> by_cone(by_strobe.size());
     const auto add = [&](const std::string& channel, std::vector<double>& sum) {
@@ -94,9 +81,7 @@ TEST_F(CommandLightmap, PartsAddUpToTheWhole) {
 }
 
 TEST_F(CommandLightmap, SaysWhatItDidInJson) {
-    const CommandResult run = lightmap("--json --preview map.png");
-    ASSERT_EQ(run.status, 0) << run.err;
-    const auto said = nlohmann::json::parse(run.out);
+    const auto said = json_by(lightmap("--json --preview map.png"));
     EXPECT_EQ(said["width_px"], 160);
     EXPECT_EQ(said["channels"], nlohmann::json({"R", "G", "B"}));
     EXPECT_GT(said["peak"][1], 0.0);
@@ -109,55 +94,39 @@ TEST_F(CommandLightmap, SaysWhatItDidInJson) {
 // What docs/lightmaps.md promises: the error that is asked for, 1e-6 of tiles and 7e-7 that floats
 // round; of ports what was measured; of emitters the lamps that stand for them.
 TEST_F(CommandLightmap, PromisesWhatHolds) {
-    const auto expect_words = [&](const std::string& words, const CommandResult& run) {
-        EXPECT_EQ(run.status, 0) << run.err;
-        EXPECT_TRUE(has(run.out, words + ";\n"));
-    };
     const std::string off_edges = " of a signal off the beams' edges";
-    expect_words("exact to 1.2e-05" + off_edges, lightmap());
-    expect_words("exact to 1.8e-06" + off_edges, lightmap("--error 1e-7"));
+    done(lightmap(), "exact to 1.2e-05" + off_edges + ";\n");
+    done(lightmap("--error 1e-7"), "exact to 1.8e-06" + off_edges + ";\n");
     const std::string text = text_of("rig.toml");
     write_file(path("rig.toml"),
                text +
                    "\n[camera.port]\nshape = \"flat\"\ndistance_mm = 50.0\n"
                    "thickness_mm = 12.0\nglass = \"bk7\"\n");
-    expect_words("near to 1.1e-04" + off_edges + ", as measured behind ports and not bounded",
-                 lightmap());
-    const auto port = nlohmann::json::parse(lightmap("--json").out);
-    EXPECT_FALSE(port["promise"]["bounded"]);
-    write_file(
-        path("rig.toml"),
-        std::regex_replace(text, std::regex("\nbeam "), "\nemitter_mm = [63.5, 30.2]\nbeam "));
-    expect_words("exact to 1.2e-05" + off_edges + ", emitters being grids of lamps", lightmap());
+    done(lightmap(),
+         "near to 1.1e-04" + off_edges + ", as measured behind ports and not bounded;\n");
+    EXPECT_FALSE(json_by(lightmap("--json"))["promise"]["bounded"]);
+    write_file(path("rig.toml"), replaced(text, "\nbeam ", "\nemitter_mm = [63.5, 30.2]\nbeam "));
+    done(lightmap(), "exact to 1.2e-05" + off_edges + ", emitters being grids of lamps;\n");
 }
 
 TEST_F(CommandLightmap, RefusesTwoPartsOfOneName) {
-    const std::string text = text_of("rig.toml");
-    write_file(path("rig.toml"),
-               std::regex_replace(text, std::regex("\"aft\""), "\"fore.collimated\""));
-    const CommandResult run = lightmap("--per-strobe --per-cone");
-    EXPECT_EQ(run.status, kBadInput);
-    EXPECT_EQ(run.err,
-              "aphotic: rig.toml: strobes: found two parts of the light that would be named "
-              "fore.collimated, of a strobe and of a cone, or of two cones; allowed: names that "
-              "differ\n");
-    EXPECT_FALSE(fs::exists(path("map.exr")));
-    EXPECT_EQ(lightmap("--per-strobe").status, 0);
+    write_file(path("rig.toml"), replaced(text_of("rig.toml"), "\"aft\"", "\"fore.collimated\""));
+    refused(lightmap("--per-strobe --per-cone"),
+            "aphotic: rig.toml: strobes: found two parts of the light that would be named "
+            "fore.collimated, of a strobe and of a cone, or of two cones; allowed: names that "
+            "differ\n");
+    done(lightmap("--per-strobe"));
 }
 
 TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
-    const CommandResult run = aphotic("lightmap rig.toml -o no-such-folder/map.exr");
-    EXPECT_EQ(run.status, kRunFailed);
-    EXPECT_TRUE(has(run.err, "no-such-folder/map.exr"));
+    refused("lightmap rig.toml -o no-such-folder/map.exr", "no-such-folder/map.exr", kRunFailed);
 }
 
 // Each is, bit for bit, the map of that altitude alone.
 TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
     const auto maps = [&](const std::string& altitudes) {
-        const CommandResult run =
-            aphotic(fmt::format("lightmap rig.toml -o maps --altitude {} --json", altitudes));
-        EXPECT_EQ(run.status, 0) << run.err;
-        return nlohmann::json::parse(run.out)["maps"];
+        return json_by(
+            fmt::format("lightmap rig.toml -o maps --altitude {} --json", altitudes))["maps"];
     };
     const auto said = maps("1.5,1.8:2:0.1");
     const std::vector<std::pair<std::string, std::string>> wanted{
@@ -170,7 +139,7 @@ TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
         const auto& [altitude, file] = wanted[i];
         EXPECT_EQ(said[i]["file"], file);
         EXPECT_EQ(ExrReader(path(file)).attribute("aphotic:altitude_m"), altitude);
-        ASSERT_EQ(lightmap(fmt::format("--altitude {}", altitude)).status, 0);
+        done(lightmap(fmt::format("--altitude {}", altitude)));
         EXPECT_TRUE(text_of(file) == text_of("map.exr")) << file;
     }
     // Names tell altitudes apart; maps of another run go, what is not ours stays.
@@ -180,10 +149,9 @@ TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
 }
 
 TEST_F(CommandLightmap, ExportsForOplab) {
-    const CommandResult run =
-        aphotic("lightmap rig.toml -o oplab --altitude 1.8:2.2:0.1 --export oplab --json");
-    ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_GT(nlohmann::json::parse(run.out)["oplab"]["rms"], 0.0);
+    const auto said =
+        json_by("lightmap rig.toml -o oplab --altitude 1.8:2.2:0.1 --export oplab --json");
+    EXPECT_GT(said["oplab"]["rms"], 0.0);
     for (const char* file : {"attenuation_parameters.npy",
                              "correction_gains.npy",
                              "image_corrected_mean.npy",
@@ -192,31 +160,19 @@ TEST_F(CommandLightmap, ExportsForOplab) {
 }
 
 TEST_F(CommandLightmap, RefusesWhatIsByAltitudeBeforeItBegins) {
-    const auto refused = [&](const Arguments& options) {
-        const CommandResult run = aphotic("lightmap rig.toml" + options);
-        EXPECT_EQ(run.status, kBadInput) << testing::PrintToString(options);
-        EXPECT_FALSE(fs::exists(path("out"))) << testing::PrintToString(options);
-        EXPECT_FALSE(fs::exists(path("out.exr"))) << testing::PrintToString(options);
-        return run.err;
-    };
     for (const std::string& altitudes :
          Arguments(
              "4:1:0.1 1:4 1:4:0.7 1:4:0 1:4:-1 one 1:4:0.1x 0:4:1 2,1 1,1 1,,2 , 1:20000:1 nan") +
-             Arguments{""}) {
-        EXPECT_NE(refused({"-o", "out", "--altitude", altitudes}).find("--altitude: "),
-                  std::string::npos)
-            << altitudes;
-    }
-    const auto expect = [&](const std::string& words, const Arguments& options) {
-        const std::string said = refused(options);
-        EXPECT_TRUE(has(said, words));
-    };
-    expect("--output: found out.exr; allowed: a folder", "-o out.exr --altitude 1:2:0.5");
-    expect("--output: found out; allowed: a name that ends in .exr", "-o out --altitude 2");
-    expect("--preview: found with 3 altitudes", "-o out --altitude 1:2:0.5 --preview map.png");
-    expect("found 3 altitudes; allowed: 4 or more", "-o out --altitude 1:3:1 --export oplab");
-    expect("strobe 'aft' stands 0.2327 m under the sea floor",
-           "-o out --altitude 0.02:0.1:0.04 --pitch 30");
+             Arguments{""})
+        refused({"lightmap", "rig.toml", "-o", "out", "--altitude", altitudes}, "--altitude: ");
+    for (const auto& [options, why] :
+         Cases{{"-o out.exr --altitude 1:2:0.5", "--output: found out.exr; allowed: a folder"},
+               {"-o out --altitude 2", "--output: found out; allowed: a name that ends in .exr"},
+               {"-o out --altitude 1:2:0.5 --preview map.png", "--preview: found with 3 altitudes"},
+               {"-o out --altitude 1:3:1 --export oplab", "found 3 altitudes; allowed: 4 or more"},
+               {"-o out --altitude 0.02:0.1:0.04 --pitch 30",
+                "strobe 'aft' stands 0.2327 m under the sea floor"}})
+        refused("lightmap rig.toml" + options, why);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 //
 // What cameras and their owners hand in, at the door of correct, observe and baseline: parts of
 // files, mono cameras, raw files, exposures, tags, and rigs of another scale.
-#include "base/atomic_file.h"
 #include "image/exr.h"
 #include "support/command_test.h"
 #include "support/dng.h"
 #include "support/exiftool.h"
+#include "support/exr_file.h"
 #include "support/has.h"
+#include "support/scene_text.h"
 #include "support/tiff.h"
 #include "survey/images/raw_image.h"
 
@@ -28,9 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-constexpr int kSkipped = 1;
-constexpr int kBadInput = 2;
 
 constexpr int kWidth = 64;  // LibRaw reads no smaller raw files
 constexpr int kHeight = 48;
@@ -59,9 +57,7 @@ class SurveyInput : public CommandTest {
             for (int i = 0; i < static_cast<int>(kPixels); ++i)
                 planes.push_back(light(is_grey ? 0 : c, i % kWidth, i / kWidth));
         }
-        ExrWriter exr(path("map.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
-        exr.write_rows(kHeight, planes);
-        exr.finish();
+        write_exr(path("map.exr"), kWidth, planes);
     }
 
     // What the camera makes of that light: numbers over black of this many times it.
@@ -111,22 +107,18 @@ class SurveyInput : public CommandTest {
         write_file(path("raw/" + name), DngWriter::bytes(dng));
     }
 
-    [[nodiscard]] CommandResult run(Arguments arguments, const Arguments& more) const {
-        arguments += more;
-        return aphotic(arguments);
-    }
     // By the map, into floats.
-    [[nodiscard]] CommandResult correct(const std::string& output, const Arguments& more) const {
-        return run(fmt::format("correct raw --map map.exr -o {} --format exr", output), more);
+    static Arguments correct(const std::string& output, const Arguments& more) {
+        return "correct raw --map map.exr --format exr -o " + output + more;
     }
-    static Arguments levels(Arguments more) {
-        more += "--black-level 64 --white-level 4095";
-        return more;
+    static Arguments levels(const Arguments& more) {
+        return more + "--black-level 64 --white-level 4095";
     }
 
     [[nodiscard]] std::vector<float> samples(const std::string& file,
-                                             const std::vector<std::string>& channels) const {
-        return ExrReader(path(file)).planes(channels);
+                                             const std::vector<std::string>& channels = {
+                                                 "R", "G", "B"}) const {
+        return read_exr(path(file), channels);
     }
 };
 
@@ -137,13 +129,9 @@ TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
     const Numbers image = mosaic(Mosaic::Rggb, 1000.0);
     const auto results = [&](const std::string& output, Arguments more) {
         more += "--black-level 64";
-        EXPECT_EQ(correct(output, more).status, 0);
-        const CommandResult baseline =
-            run(fmt::format("baseline illumination-reflectance raw -o {}-baseline", output), more);
-        EXPECT_EQ(baseline.status, 0) << baseline.err;
-        const CommandResult observed =
-            run(fmt::format("observe raw --nav nav.csv --altitude 2 -o {}.exr", output), more);
-        EXPECT_EQ(observed.status, 0) << observed.err;
+        done(correct(output, more));
+        done(fmt::format("baseline illumination-reflectance raw -o {}-baseline", output) + more);
+        done(fmt::format("observe raw --nav nav.csv --altitude 2 -o {}.exr", output) + more);
         return text_of(output + "/a.exr") + text_of(output + "-baseline/a.exr") +
                text_of(output + ".exr");
     };
@@ -156,29 +144,23 @@ TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
     write_tiff("a.tif", placed(image, 3, 1, kWidth + 5, kHeight + 2), kWidth + 5, kHeight + 2);
     EXPECT_EQ(results("odd", "--bayer BGGR --crop 3,1,64,48"), whole);
     EXPECT_NE(results("wrong", "--bayer RGGB --crop 3,1,64,48"), whole);
-    const Json notes = Json::parse(text_of("odd/correction.json"));
+    const Json notes = json_in("odd/correction.json");
     EXPECT_EQ(notes["settings"]["crop"], "3,1,64,48");
     EXPECT_EQ(notes["settings"]["bayer"], "BGGR");
 }
 
-// Another crop is another result.
 // Levels of a 16-bit camera for files of 8 bits, as of another camera's rig.
 TEST_F(SurveyInput, LevelsBeyondTheFilesNumbersAreRefused) {
     write_map(false);
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
-    const auto refusal = [&](const Arguments& levels) {
-        const CommandResult result = correct("out", "--bayer RGGB" + levels);
-        EXPECT_EQ(result.status, kBadInput);
-        EXPECT_FALSE(fs::exists(path("out")));
-        return result.err;
-    };
-    EXPECT_TRUE(has(refusal("--white-level 65536"),
-                    "white level: found 65536; allowed: up to 65535, the file's largest number"));
-    EXPECT_TRUE(has(refusal("--black-level 4095 --white-level 4095"),
-                    "black level: found 4095; allowed: less than the white level, 4095"));
-    EXPECT_EQ(correct("out", "--bayer RGGB --white-level 65535").status, 0);
+    refused(correct("out", "--bayer RGGB --white-level 65536"),
+            "white level: found 65536; allowed: up to 65535, the file's largest number");
+    refused(correct("out", "--bayer RGGB --black-level 4095 --white-level 4095"),
+            "black level: found 4095; allowed: less than the white level, 4095");
+    done(correct("out", "--bayer RGGB --white-level 65535"));
 }
 
+// Another crop is another result.
 TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
     write_map(false);
     write_tiff("a.tif",
@@ -186,10 +168,9 @@ TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
                kWidth + 2,
                kHeight);
     const auto kept = [&](const std::string& crop) {
-        const CommandResult result =
-            correct("out", fmt::format("--bayer RGGB --crop {} --gain 1 --json", crop));
-        EXPECT_EQ(result.status, 0) << result.err;
-        return Json::parse(result.out)["kept"].get<int>();
+        return json_by(correct("out",
+                               fmt::format("--bayer RGGB --crop {} --gain 1 --json", crop)))["kept"]
+            .get<int>();
     };
     EXPECT_EQ(kept("0,0,64,48"), 0);
     EXPECT_EQ(kept("0,0,64,48"), 1);
@@ -201,32 +182,27 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
     write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\n");
     for (const char* name : {"a.tif", "b.tif"})
         write_tiff(name, Numbers((kWidth + 1) * kHeight, 100), kWidth + 1, kHeight);
-    const auto refused = [&](const Arguments& options, const std::string& words) {
+    Cases cases{{"--bayer RGGB --crop 2,0,64,48",
+                 "--crop 2,0,64,48: reaches beyond the image; allowed: within 65 x 48 pixels"},
+                {"--bayer RGGB --crop 0,1,64,48", "within 65 x 48 pixels"},
+                {"--bayer RGGB --crop 0,0,2147483647,48", "within 65 x 48 pixels"},
+                {"--bayer RGGB --half left",
+                 "--half: found an image of 65 x 48 pixels; allowed: an even width"},
+                {"--half upper", "--half"},
+                {"--exposure auto", "--exposure: found auto; allowed: exif, flash, none"},
+                {"--half left --crop 0,0,5,5", "--half excludes --crop"},
+                {"--bayer gray", "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono"},
+                {"--bayer RGGB --exposure exif", "no image's Exif has ExposureTime"}};
+    for (const std::string wrong :
+         {"1,2,3", "1,2,3,4,5", "-1,0,5,5", "0,0,0,5", "a,0,5,5", "0;0;5;5", ""})
+        cases.push_back({{"--crop", wrong}, "--crop: found '" + wrong + "'; allowed: X,Y,WIDTH"});
+    for (const auto& [options, why] : cases) {
         for (const Arguments& command :
              std::vector<Arguments>{"correct raw --map map.exr -o out",
                                     "baseline homomorphic raw -o out",
-                                    "observe raw --nav nav.csv --altitude 2 -o out.exr"}) {
-            const CommandResult result = run(command, options);
-            EXPECT_EQ(result.status, kBadInput) << command[0] << " " << words;
-            EXPECT_TRUE(has(result.err, words));
-            EXPECT_FALSE(has(result.err, "raw/b.tif"));
-            EXPECT_FALSE(fs::exists(path("out")) || fs::exists(path("out.exr")));
-        }
-    };
-    refused("--bayer RGGB --crop 2,0,64,48",
-            "--crop 2,0,64,48: reaches beyond the image; allowed: within 65 x 48 pixels");
-    refused("--bayer RGGB --crop 0,1,64,48", "within 65 x 48 pixels");
-    refused("--bayer RGGB --crop 0,0,2147483647,48", "within 65 x 48 pixels");
-    refused("--bayer RGGB --half left",
-            "--half: found an image of 65 x 48 pixels; allowed: an even width");
-    for (const char* wrong :
-         {"1,2,3", "1,2,3,4,5", "-1,0,5,5", "0,0,0,5", "a,0,5,5", "0;0;5;5", ""})
-        refused({"--crop", wrong}, fmt::format("--crop: found '{}'; allowed: X,Y,WIDTH", wrong));
-    refused("--half upper", "--half");
-    refused("--exposure auto", "--exposure: found auto; allowed: exif, flash, none");
-    refused("--half left --crop 0,0,5,5", "--half excludes --crop");
-    refused("--bayer gray", "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono");
-    refused("--bayer RGGB --exposure exif", "no image's Exif has ExposureTime");
+                                    "observe raw --nav nav.csv --altitude 2 -o out.exr"})
+            EXPECT_FALSE(has(refused(command + options, why).err, "raw/b.tif"));
+    }
 }
 
 TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
@@ -237,8 +213,7 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
             std::lround(kBlack + 2000.0 * light(0, i % kWidth, i / kWidth))));
     }
     write_tiff("a.tif", numbers, kWidth, kHeight);
-    const CommandResult result = correct("out", levels("--bayer mono --middle 0.25"));
-    ASSERT_EQ(result.status, 0) << result.err;
+    const CommandResult result = done(correct("out", levels("--bayer mono --middle 0.25")));
     EXPECT_TRUE(std::regex_search(result.out, std::regex("gain 0\\.000125[0-9]*, taken")))
         << result.out;
     EXPECT_EQ(ExrReader(path("out/a.exr")).channels(), std::vector<std::string>{"Y"});
@@ -246,14 +221,11 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
     for (const float sample : samples("out/a.exr", {"Y"}))
         EXPECT_NEAR(sample / 0.25, 1.0, 2.0 * kStep);
 
-    const CommandResult three = correct("three", levels("--bayer mono --gain 1,2,3"));
-    EXPECT_EQ(three.status, kBadInput);
-    EXPECT_TRUE(has(three.err, "--gain: found 3 numbers; allowed: 1, of a mono camera"));
+    refused(correct("three", levels("--bayer mono --gain 1,2,3")),
+            "--gain: found 3 numbers; allowed: 1, of a mono camera");
 
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
-    const CommandResult observed =
-        run("observe raw --nav nav.csv --altitude 2 -o seen.exr", "--bayer mono --black-level 64");
-    ASSERT_EQ(observed.status, 0) << observed.err;
+    done("observe raw --nav nav.csv --altitude 2 -o seen.exr --bayer mono --black-level 64");
     const std::vector<float> green = samples("seen.exr", {"G"});
     for (std::size_t i = 0; i < kPixels; ++i)
         EXPECT_NEAR(green[i], numbers[i] - kBlack, kShareOf16Bits) << i;
@@ -263,40 +235,32 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
         return all;
     }());
 
-    const CommandResult baseline = run("baseline homomorphic raw -o even", "--bayer mono");
-    ASSERT_EQ(baseline.status, 0) << baseline.err;
+    done("baseline homomorphic raw -o even --bayer mono");
     EXPECT_EQ(ExrReader(path("even/a.exr")).channels(), std::vector<std::string>{"Y"});
 
     write_map(false);
-    const CommandResult colours = correct("colours", levels("--bayer mono"));
-    EXPECT_EQ(colours.status, kBadInput);
-    EXPECT_TRUE(has(colours.err,
-                    "found the image of a mono camera, and a map whose R, G and B "
-                    "differ"));
+    refused(correct("colours", levels("--bayer mono")),
+            "found the image of a mono camera, and a map whose R, G and B differ");
 }
 
 TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
     write_map(false);
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
-    ASSERT_EQ(correct("tiff", levels("--bayer RGGB")).status, 0);
+    done(correct("tiff", levels("--bayer RGGB")));
     fs::remove(path("raw/a.tif"));
     write_dng("a.dng", dng(1000.0));
-    const CommandResult result = correct("dng", {});
-    ASSERT_EQ(result.status, 0) << result.err;
-    const std::vector<float> raw = samples("dng/a.exr", {"R", "G", "B"});
-    const std::vector<float> tiff = samples("tiff/a.exr", {"R", "G", "B"});
+    done(correct("dng", {}));
+    const std::vector<float> raw = samples("dng/a.exr");
+    const std::vector<float> tiff = samples("tiff/a.exr");
     constexpr double kLeast = 200.0;  // number over black
     for (std::size_t i = 0; i < raw.size(); ++i)
         EXPECT_NEAR(raw[i] / tiff[i], 1.0, 2.0 * kShareOf16Bits / kLeast) << i;
-    const CommandResult other = correct("other", "--bayer GRBG");
-    EXPECT_EQ(other.status, kBadInput);
-    EXPECT_TRUE(
-        has(other.err, "--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"));
+    refused(correct("other", "--bayer GRBG"),
+            "--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says");
     const std::string bytes = text_of("raw/a.dng");
     write_file(path("raw/cut.dng"), bytes.substr(0, bytes.size() / 2));
-    const CommandResult cut = correct("cut", "--gain 1");
-    EXPECT_EQ(cut.status, kSkipped);
-    EXPECT_TRUE(has(cut.err, "raw/cut.dng: cannot be read: "));
+    EXPECT_TRUE(has(done(correct("cut", "--gain 1"), "", kAnswerIsNo).err,
+                    "raw/cut.dng: cannot be read: "));
 }
 
 // One floor in twice the light of exposure: one image, up to the camera's rounding.
@@ -320,31 +284,26 @@ TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
         return image[kPixels / 2] / first[kPixels / 2];
     };
     constexpr double kRounding = 2e-3;  // half a step of some 500
-    ASSERT_EQ(correct("raw-out", {}).status, 0);
+    done(correct("raw-out", {}));
     EXPECT_NEAR(ratio("raw-out", "b.exr"), 2.0, 2.0 * kRounding);
-    const CommandResult result = correct("exif", "--exposure exif");
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_TRUE(has(result.out, "brought to 4 ms, ISO 100"));
+    done(correct("exif", "--exposure exif"), "brought to 4 ms, ISO 100");
     EXPECT_NEAR(ratio("exif", "b.exr"), 1.0, kRounding);
     EXPECT_NEAR(ratio("exif", "c.exr"), 1.0, kRounding);
     // A flash is as bright however long the shutter is open.
-    ASSERT_EQ(correct("flash", "--exposure flash").status, 0);
+    done(correct("flash", "--exposure flash"));
     EXPECT_NEAR(ratio("flash", "b.exr"), 2.0, 2.0 * kRounding);
     EXPECT_NEAR(ratio("flash", "c.exr"), 1.0, kRounding);
     const std::string journal = text_of("exif/corrected.jsonl");
     EXPECT_TRUE(has(journal, "\"relative_exposure\":2.0"));
-    const Json notes = Json::parse(text_of("exif/correction.json"));
+    const Json notes = json_in("exif/correction.json");
     EXPECT_EQ(notes["settings"]["exposure"]["time_s"], 0.004);
 
-    const CommandResult baseline =
-        run("baseline local-equalisation raw -o even --clip 1", "--exposure exif");
-    ASSERT_EQ(baseline.status, 0) << baseline.err;
+    done("baseline local-equalisation raw -o even --clip 1 --exposure exif");
     EXPECT_NEAR(ratio("even", "b.exr"), 1.0, kRounding);
 
     write_dng("d.dng", dng(700.0));
-    const CommandResult untold = correct("untold", "--exposure exif");
-    EXPECT_EQ(untold.status, kSkipped);
-    EXPECT_TRUE(has(untold.err, "raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"));
+    EXPECT_TRUE(has(done(correct("untold", "--exposure exif"), "", kAnswerIsNo).err,
+                    "raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"));
 }
 
 TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
@@ -359,10 +318,8 @@ TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
                      "-SerialNumber=AB123",
                      "-XMP-dc:Creator=Jane Doe"});
     for (const std::string format : {"tiff", "png"}) {
-        ASSERT_EQ(run(fmt::format("correct raw --map map.exr -o {0} --format {0}", format),
-                      levels("--bayer RGGB --mask"))
-                      .status,
-                  0);
+        done(fmt::format("correct raw --map map.exr -o {0} --format {0}", format) +
+             levels("--bayer RGGB --mask"));
         const Json found =
             tags_by_exiftool(path(format + (format == "tiff" ? "/a.tif" : "/a.png")));
         EXPECT_NEAR(found["GPS:GPSLatitude"].get<double>(), 41.5, 1e-6) << format;
@@ -372,9 +329,8 @@ TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
         EXPECT_EQ(found["XMP-dc:Creator"], "Jane Doe") << format;
     }
     // Compared to what is written without them, pixel by pixel.
-    ASSERT_EQ(correct("exr", levels("--bayer RGGB")).status, 0);
-    const CommandResult same = aphotic("compare tiff/a.tif exr/a.exr --bound 1e-4");
-    EXPECT_EQ(same.status, 0) << same.out << same.err;
+    done(correct("exr", levels("--bayer RGGB")));
+    done("compare tiff/a.tif exr/a.exr --bound 1e-4");
     const ExrReader exr(path("exr/a.exr"));
     EXPECT_EQ(exr.attribute("Exif.GPSInfo.GPSLatitude"), "41/1 30/1 0/1");
     EXPECT_EQ(exr.attribute("Xmp.dc.creator"), "Jane Doe");
@@ -387,22 +343,15 @@ class RigOfSurvey : public SurveyInput {
                    const std::string& pitch_um,
                    const std::string& more = "",
                    const std::string& response = "\"nikon-d5100\"") const {
-        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-        const auto put = [&](const std::string& key, const std::string& value) {
-            text = std::regex_replace(
-                text, std::regex("\n\\s*" + key + "\\s*=[^\n]*"), "\n" + key + " = " + value);
-        };
-        put("resolution", resolution);
-        put("pixel_pitch_um", pitch_um);
-        put("response", response + "\n" + more);
-        write_file(path("rig.toml"), text);
+        write_file(path("rig.toml"),
+                   with(scene_text("habcam.toml"),
+                        {{"resolution", resolution},
+                         {"pixel_pitch_um", pitch_um},
+                         {"response", response + "\n" + more}}));
     }
 
-    [[nodiscard]] CommandResult correct_by_rig(const std::string& output,
-                                               const Arguments& more) const {
-        return run(
-            fmt::format("correct raw --rig rig.toml --nav nav.csv -o {} --format exr", output),
-            more);
+    static Arguments correct_by_rig(const std::string& output, const Arguments& more) {
+        return "correct raw --rig rig.toml --nav nav.csv --format exr -o " + output + more;
     }
 };
 
@@ -415,22 +364,18 @@ TEST_F(RigOfSurvey, TellsItsCamerasNumbersAndOptionsWin) {
               "exposure_ms = 2\niso = 100");
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
-    const CommandResult by_rig = correct_by_rig("rig", {});
-    ASSERT_EQ(by_rig.status, 0) << by_rig.err;
-    EXPECT_TRUE(has(by_rig.out, "camera: RGGB, black level 64, white level 4095\n"));
-    ASSERT_EQ(correct_by_rig("options", levels("--bayer RGGB")).status, 0);
+    done(correct_by_rig("rig", {}), "camera: RGGB, black level 64, white level 4095\n");
+    done(correct_by_rig("options", levels("--bayer RGGB")));
     EXPECT_EQ(text_of("rig/a.exr"), text_of("options/a.exr"));
-    const CommandResult other = correct_by_rig("other", "--black-level 60 --json");
-    ASSERT_EQ(other.status, 0) << other.err;
-    EXPECT_EQ(Json::parse(other.out)["settings"]["black_level"], 60.0);
-    EXPECT_EQ(Json::parse(other.out)["settings"]["white_level"], 4095.0);
-    const CommandResult baseline = run("baseline homomorphic raw -o even --json", "--rig rig.toml");
-    ASSERT_EQ(baseline.status, 0) << baseline.err;
-    EXPECT_EQ(Json::parse(baseline.out)["settings"]["bayer"], "RGGB");
-    const CommandResult observed =
-        run("observe raw --nav nav.csv --altitude 2 -o seen.exr --json", "--rig rig.toml");
-    ASSERT_EQ(observed.status, 0) << observed.err;
-    EXPECT_EQ(Json::parse(observed.out)["camera"]["black_level"], 64.0);
+    const Json other = json_by(correct_by_rig("other", "--black-level 60 --json"))["settings"];
+    EXPECT_EQ(other["black_level"], 60.0);
+    EXPECT_EQ(other["white_level"], 4095.0);
+    EXPECT_EQ(
+        json_by("baseline homomorphic raw -o even --json --rig rig.toml")["settings"]["bayer"],
+        "RGGB");
+    EXPECT_EQ(json_by("observe raw --nav nav.csv --altitude 2 -o seen.exr --json --rig rig.toml")
+                  ["camera"]["black_level"],
+              64.0);
 }
 
 // The rig's exposure is what images are brought to.
@@ -441,10 +386,10 @@ TEST_F(RigOfSurvey, TellsTheExposureThatImagesAreBroughtTo) {
     image.exposure_ms = 8;
     image.iso = 100;
     write_dng("a.dng", image);
-    ASSERT_EQ(correct_by_rig("plain", "--gain 1").status, 0);
-    ASSERT_EQ(correct_by_rig("exif", "--gain 1 --exposure exif").status, 0);
-    const std::vector<float> plain = samples("plain/a.exr", {"R", "G", "B"});
-    const std::vector<float> exif = samples("exif/a.exr", {"R", "G", "B"});
+    done(correct_by_rig("plain", "--gain 1"));
+    done(correct_by_rig("exif", "--gain 1 --exposure exif"));
+    const std::vector<float> plain = samples("plain/a.exr");
+    const std::vector<float> exif = samples("exif/a.exr");
     for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_FLOAT_EQ(exif[i], plain[i] / 4.0F) << i;
 }
 
@@ -453,36 +398,31 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     write_file(path("nav.csv"), "image,altitude_m,pitch_deg\na,2,5\n");
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
     write_rig("[64, 48]", kPitch_um);
-    ASSERT_EQ(correct_by_rig("own", levels("--bayer RGGB")).status, 0);
+    done(correct_by_rig("own", levels("--bayer RGGB")));
     write_rig("[128, 96]", "68.53125");
-    const CommandResult scaled = correct_by_rig("scaled", levels("--bayer RGGB"));
-    ASSERT_EQ(scaled.status, 0) << scaled.err;
-    EXPECT_TRUE(has(scaled.out, "rig of 128 x 96 pixels scaled to 64 x 48\n"));
+    done(correct_by_rig("scaled", levels("--bayer RGGB")),
+         "rig of 128 x 96 pixels scaled to 64 x 48\n");
     EXPECT_EQ(text_of("own/a.exr"), text_of("scaled/a.exr"));
-    const Json notes = Json::parse(text_of("scaled/correction.json"));
+    const Json notes = json_in("scaled/correction.json");
     EXPECT_EQ(notes["settings"]["rig_scale"], 0.5);
     // A part of the rig's own image is not its whole one, smaller.
     write_rig("[64, 48]", kPitch_um);
-    const CommandResult part = correct_by_rig("part", levels("--bayer RGGB --crop 0,0,32,24"));
-    EXPECT_EQ(part.status, kBadInput);
-    EXPECT_TRUE(has(part.err, "--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels"));
+    refused(correct_by_rig("part", levels("--bayer RGGB --crop 0,0,32,24")),
+            "--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels");
     write_rig("[32, 48]", kPitch_um);
-    const CommandResult stereo = correct_by_rig("stereo", levels("--bayer RGGB"));
-    EXPECT_TRUE(has(stereo.err,
-                    "found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two "
-                    "cameras' images are side by side, --half"));
+    refused(correct_by_rig("stereo", levels("--bayer RGGB")),
+            "found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two cameras' images are "
+            "side by side, --half");
     write_rig("[128, 95]", "68.53125");
-    const CommandResult other = correct_by_rig("other", levels("--bayer RGGB"));
-    EXPECT_EQ(other.status, kBadInput);
-    EXPECT_TRUE(has(other.err, "found 64 x 48 pixels; allowed: 128 x 95, as the map has"));
+    refused(correct_by_rig("other", levels("--bayer RGGB")),
+            "found 64 x 48 pixels; allowed: 128 x 95, as the map has");
 }
 
 TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
     write_file(path("qe.csv"), "wavelength_nm,quantum_efficiency\n400,0.3\n550,0.6\n720,0.2\n");
     write_rig("[64, 48]", kPitch_um, "", "{ quantum_efficiency = \"qe.csv\" }");
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
-    const CommandResult made = aphotic("lightmap rig.toml -o light.exr --altitude 2");
-    ASSERT_EQ(made.status, 0) << made.err;
+    done("lightmap rig.toml -o light.exr --altitude 2");
     const std::vector<float> red = samples("light.exr", {"R"});
     EXPECT_EQ(samples("light.exr", {"G"}), red);
     EXPECT_EQ(samples("light.exr", {"B"}), red);
@@ -492,10 +432,8 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
         numbers.push_back(static_cast<std::uint16_t>(std::lround(kBlack + times * light)));
     }
     write_tiff("a.tif", numbers, kWidth, kHeight);
-    const CommandResult result =
-        correct_by_rig("out", "--black-level 64 --white-level 4095 --middle 0.5");
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_TRUE(has(result.out, "camera: mono, "));
+    done(correct_by_rig("out", "--black-level 64 --white-level 4095 --middle 0.5"),
+         "camera: mono, ");
     const std::vector<float> image = samples("out/a.exr", {"Y"});
     for (std::size_t i = 0; i < kPixels; ++i) {
         const double number = numbers[i] - kBlack;
@@ -503,14 +441,11 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
         if (number < 100.0) continue;       // held where it is dark
         EXPECT_NEAR(image[i], 0.5, 0.5 * (0.5 / number + kMapError)) << i;
     }
-    const CommandResult colours = correct_by_rig("colours", "--bayer RGGB");
-    EXPECT_EQ(colours.status, kBadInput);
-    EXPECT_TRUE(has(colours.err,
-                    "--bayer: found RGGB, and the rig's camera has one response; allowed: mono"));
+    refused(correct_by_rig("colours", "--bayer RGGB"),
+            "--bayer: found RGGB, and the rig's camera has one response; allowed: mono");
     write_rig("[64, 48]", kPitch_um);
-    const CommandResult mono = correct_by_rig("mono", "--bayer mono");
-    EXPECT_EQ(mono.status, kBadInput);
-    EXPECT_TRUE(has(mono.err, "the rig's camera has responses of red, green and blue"));
+    refused(correct_by_rig("mono", "--bayer mono"),
+            "the rig's camera has responses of red, green and blue");
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // `aphotic survey` of a flat floor, and what `aphotic correct` makes of it.
-#include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "support/command_test.h"
-#include "support/has.h"
 #include "support/small_scene.h"
 #include "survey/navigation/navigation_file.h"
 #include "survey/simulate/flight.h"
@@ -15,7 +13,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -31,21 +28,16 @@ constexpr std::size_t kWidth_px = 8;  // of the scene's 340, forty times coarser
 
 class SurveyCommand : public CommandTest {
   protected:
-    SurveyCommand() {
-        put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes/survey/smooth.toml", path(""));
-    }
+    SurveyCommand() { put_small_scene("survey/smooth.toml", home_); }
 };
 
 // The loop that the command is for: what was flown and what was seen, told apart by a correction
 // that knows the rig. Of 16 bits without noise nothing is left but rounding.
 TEST_F(SurveyCommand, IsCorrectedToItsTexture) {
-    const CommandResult made =
-        aphotic("survey rig.toml --images 3 --white-level 65535 --no-noise -o out");
-    ASSERT_EQ(made.status, 0) << made.err;
-    const CommandResult corrected = aphotic(
+    done("survey rig.toml --images 3 --white-level 65535 --no-noise -o out");
+    done(
         "correct out/raw --rig rig.toml --nav out/navigation.txt --bayer RGGB --black-level 64 "
         "--white-level 65535 --keep-mosaic --middle 1 --format exr -o corrected");
-    ASSERT_EQ(corrected.status, 0) << corrected.err;
     // The darkest pixel, red at the corner of the highest image, has some 100 numbers over black.
     constexpr double kRounding = 0.5 / 100.0;
     // The gain makes each channel's median 1: of its own pixels, whose textures differ.
@@ -68,15 +60,14 @@ TEST_F(SurveyCommand, FliesTheUsersNavigation) {
     write_file(path("dive.csv"),
                "image,altitude_m,pitch_deg,roll_deg\nB 1.jpg,2,1,0\nA.jpg,2.5,-1,3\n");
     const Arguments command("survey rig.toml --flight dive.csv -o out");
-    const CommandResult made = aphotic(command);
-    ASSERT_EQ(made.status, 0) << made.err;
+    done(command);
     EXPECT_EQ(text_of("out/navigation.txt"),
               "image,altitude_m,pitch_deg,roll_deg\n\"B 1.tif\",2,1,0\nA.tif,2.5,-1,3\n");
     EXPECT_TRUE(fs::exists(path("out/raw/B 1.tif")));
     EXPECT_TRUE(fs::exists(path("out/raw/A.tif")));
-    EXPECT_EQ(aphotic(command).status, 0) << "the same again";
+    done(command);  // the same again
     write_file(path("dive.csv"), "image,altitude_m,pitch_deg,roll_deg\nB.jpg,2,1,0\n");
-    EXPECT_EQ(aphotic(command).status, 2) << "another flight";
+    refused(command, "another");
 }
 
 TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
@@ -85,9 +76,8 @@ TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
                 "bayer = \"GBRG\"\nblack_level_dn = 10\nwhite_level_dn = 1023\n"
                 "read_noise_e = 3\nsaturation_e = 5000\n");
     write_file(path("rig.toml"), toml);
-    const CommandResult made = aphotic("survey rig.toml --images 1 --read-noise-e 4 --json -o out");
-    ASSERT_EQ(made.status, 0) << made.err;
-    const Json camera = Json::parse(made.out).at("camera");
+    const Json camera =
+        json_by("survey rig.toml --images 1 --read-noise-e 4 --json -o out").at("camera");
     EXPECT_EQ(camera["bayer"], "GBRG");
     EXPECT_EQ(camera["black_level_dn"], 10.0);
     EXPECT_DOUBLE_EQ(camera["gain_dn_per_e"], 1013.0 / 5000.0);
@@ -96,10 +86,8 @@ TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
     // And so does the correction: levels, pattern and noise.
     toml.insert(toml.find("resolution"), "gain_dn_per_e = 0.2\n");
     write_file(path("rig.toml"), toml);
-    const CommandResult corrected =
-        aphotic("correct out/raw --rig rig.toml --nav out/navigation-measured.txt -o corrected");
-    ASSERT_EQ(corrected.status, 0) << corrected.err;
-    const Json settings = Json::parse(text_of("corrected/correction.json")).at("settings");
+    done("correct out/raw --rig rig.toml --nav out/navigation-measured.txt -o corrected");
+    const Json settings = json_in("corrected/correction.json").at("settings");
     EXPECT_EQ(settings["electrons"], 5.0);
     EXPECT_DOUBLE_EQ(settings["read_noise"], std::sqrt(0.36 + 1.0 / 12.0));
 }
@@ -108,21 +96,18 @@ TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
 // EMVA 1288's numbers, and how many electrons a signal of 1 gives: raw is black + gain times these.
 TEST_F(SurveyCommand, TakesItsCameraFromTheOptions) {
     const auto make = [&](const std::string& folder, const Arguments& more) {
-        const CommandResult made =
-            aphotic(fmt::format("survey rig.toml --images 1 --no-noise --json --texture 0 "
-                                "--white-level 65535 -o {}",
-                                folder) +
-                    more);
-        EXPECT_EQ(made.status, 0) << made.err;
-        return Json::parse(made.out).at("camera");
+        return json_by(fmt::format("survey rig.toml --images 1 --no-noise --json --texture 0 "
+                                   "--white-level 65535 -o {}",
+                                   folder) +
+                       more)
+            .at("camera");
     };
     // What the camera counted over black, by the command that averages it.
     const auto numbers = [&](const std::string& folder) {
-        const CommandResult observed =
-            aphotic(fmt::format("observe {0}/raw --nav {0}/navigation.txt --altitude 2 --within 9 "
-                                "--bayer RGGB --black-level 64 -o {0}.exr",
-                                folder));
-        EXPECT_EQ(observed.status, 0) << observed.err;
+        done(
+            fmt::format("observe {0}/raw --nav {0}/navigation.txt --altitude 2 --within 9 "
+                        "--bayer RGGB --black-level 64 -o {0}.exr",
+                        folder));
         return ExrReader(path(folder + ".exr")).planes(std::array<std::string, 1>{"G"});
     };
     const Json camera = make("one", "--saturation-e 8000 --gain-dn-per-e 0.5");
@@ -158,7 +143,7 @@ TEST_F(SurveyCommand, ItsNavigationIsOffAsToldTo) {
     Arguments command(
         "survey rig.toml --images 60 --no-noise --altitude-bias 0.2 --pitch-bias 1.5 --roll-bias "
         "-2.5 --altitude-error 0 --attitude-error 0 -o biased");
-    ASSERT_EQ(aphotic(command).status, 0);
+    done(command);
     const std::vector<Sled> flown = poses("biased/navigation.txt");
     const std::vector<Sled> told = poses("biased/navigation-measured.txt");
     ASSERT_EQ(told.size(), flown.size());
@@ -170,7 +155,7 @@ TEST_F(SurveyCommand, ItsNavigationIsOffAsToldTo) {
 
     command =
         "survey rig.toml --images 60 --no-noise --altitude-error 0.05 --attitude-error 2 -o random";
-    ASSERT_EQ(aphotic(command).status, 0);
+    done(command);
     const std::vector<Sled> scattered = poses("random/navigation-measured.txt");
     double altitude = 0.0;
     double pitch = 0.0;
@@ -189,12 +174,13 @@ TEST_F(SurveyCommand, TellsItsExposure) {
     toml.insert(toml.find("resolution"), "exposure_ms = 2.5\niso = 400\nf_number = 4\n");
     write_file(path("rig.toml"), toml);
     const auto electrons = [&](const std::string& folder, const Arguments& more) {
-        const CommandResult made = aphotic(
-            fmt::format("survey rig.toml --images 1 --no-noise --white-level 65535 --json -o {}",
-                        folder) +
-            more);
-        EXPECT_EQ(made.status, 0) << made.err;
-        return Json::parse(made.out).at("camera").at("electrons_per_signal").get<double>();
+        return json_by(fmt::format(
+                           "survey rig.toml --images 1 --no-noise --white-level 65535 --json -o {}",
+                           folder) +
+                       more)
+            .at("camera")
+            .at("electrons_per_signal")
+            .get<double>();
     };
     const double as_set = electrons("set", {});
     EXPECT_DOUBLE_EQ(electrons("down", "--f-number 8"), as_set / 4.0);
@@ -203,11 +189,10 @@ TEST_F(SurveyCommand, TellsItsExposure) {
         << "another exposure's folder";
 
     const auto corrected = [&](const std::string& folder) {
-        const CommandResult result = aphotic(fmt::format(
+        done(fmt::format(
             "correct {0}/raw --rig rig.toml --nav {0}/navigation.txt --white-level 65535 --bayer "
             "RGGB --black-level 64 --exposure exif --format exr -o {0}-corrected",
             folder));
-        EXPECT_EQ(result.status, 0) << result.err;
         return read_signals(path(folder + "-corrected/000001.exr")).samples;
     };
     const std::vector<float> expected = corrected("set");
@@ -222,29 +207,22 @@ TEST_F(SurveyCommand, TellsItsExposure) {
 }
 
 TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
-    const auto refused = [&](const Arguments& more, const std::string& words) {
-        const CommandResult result = aphotic("survey rig.toml -o out" + more);
-        EXPECT_EQ(result.status, 2) << words;
-        EXPECT_TRUE(has(result.err, words));
-        EXPECT_FALSE(fs::exists(path("out")));
-    };
-    refused("--altitude 3,2", "the lower first");
-    refused("--declare Depth=2", "found without a scene");
-    refused("--declare Depth=2;", "NAME=NUMBER");
-    refused("--bayer mono", "bayer: found mono");
-    refused("--white-level 100000", "white_level_dn: found 100000");
-    refused("--flight nowhere.csv", "nowhere.csv");
-    refused("--f-number 0", "--f-number");
-    refused("--flight rig.toml --images 3", "--images");
+    for (const auto& [options, why] :
+         Cases{{"--altitude 3,2", "the lower first"},
+               {"--declare Depth=2", "found without a scene"},
+               {"--declare Depth=2;", "NAME=NUMBER"},
+               {"--bayer mono", "bayer: found mono"},
+               {"--white-level 100000", "white_level_dn: found 100000"},
+               {"--flight nowhere.csv", "nowhere.csv"},
+               {"--f-number 0", "--f-number"},
+               {"--flight rig.toml --images 3", "--images"}})
+        refused("survey rig.toml -o out" + options, why);
 }
 
 // It looks for POV-Ray before it writes: the folder is not even made.
 TEST_F(SurveyCommand, WithoutPovRayWritesNothing) {
-    const CommandResult result =
-        aphotic("survey rig.toml --by-povray --povray nowhere/povray -o out");
-    EXPECT_EQ(result.status, 3) << result.err;
-    EXPECT_TRUE(has(result.err, "nowhere/povray"));
-    EXPECT_FALSE(fs::exists(path("out")));
+    refused(
+        "survey rig.toml --by-povray --povray nowhere/povray -o out", "nowhere/povray", kRunFailed);
 }
 
 }  // namespace
