@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/atomic_file.h"
 #include "support/command_test.h"
 #include "support/has.h"
 #include "tests/support/temp_folder.h"
@@ -17,12 +16,10 @@ const std::string kLed = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.t
 
 class CommandBeam : public CommandTest {
   protected:
-    CommandResult beam(const Arguments& arguments) { return aphotic("beam" + arguments); }
+    static Arguments beam(const Arguments& arguments) { return "beam" + arguments; }
     nlohmann::json json(Arguments arguments) {
         arguments += "--json";
-        const CommandResult result = beam(std::move(arguments));
-        EXPECT_EQ(result.status, 0) << result.err;
-        return nlohmann::json::parse(result.out);
+        return json_by(beam(std::move(arguments)));
     }
 };
 
@@ -39,7 +36,7 @@ TEST_F(CommandBeam, SaysWhatADataSheetDoes) {
     ASSERT_EQ(led["lamps"].size(), 4U);
     EXPECT_NEAR(led["lamps"][0]["luminous_flux_lm"].get<double>(), 30000.0, 1e-6);
     EXPECT_NEAR(led["lamps"][0]["largest_cd"].get<double>() / (30000.0 * on_axis), 1.0, 1e-9);
-    EXPECT_NE(beam({kLed}).out.find("100.00 degrees along, 100.00 across"), std::string::npos);
+    EXPECT_TRUE(has(aphotic(beam({kLed})).out, "100.00 degrees along, 100.00 across"));
 }
 
 // Linear between nodes of a degree, cos^n errs most in the last, where it bends towards 0.
@@ -67,13 +64,12 @@ TEST_F(CommandBeam, FindsTheClosestCones) {
     EXPECT_EQ(four["cones"].size(), 4U);
     EXPECT_LT(four["cones_error"].get<double>(), one["cones_error"].get<double>());
     // Printed so that a rig can take them.
-    EXPECT_NE(beam({kLed, "--fit-cones", "2"}).out.find("cones = [\n  { part = \"cone1\""),
-              std::string::npos);
+    EXPECT_TRUE(
+        has(aphotic(beam({kLed, "--fit-cones", "2"})).out, "cones = [\n  { part = \"cone1\""));
 }
 
 TEST_F(CommandBeam, Plots) {
-    const CommandResult plotted = beam({kLed, "--plot", "led.svg"});
-    ASSERT_EQ(plotted.status, 0) << plotted.err;
+    done(beam({kLed, "--plot", "led.svg"}));
     const std::string svg = text_of("led.svg");
     EXPECT_TRUE(has(svg, "angle off the axis"));
     EXPECT_TRUE(has(svg, "as thrown"));
@@ -81,13 +77,9 @@ TEST_F(CommandBeam, Plots) {
 
 TEST_F(CommandBeam, NamesWhatThereIs) {
     const std::string rig = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml";
-    const CommandResult other = beam({rig + ":flash"});
-    EXPECT_EQ(other.status, 2);
-    EXPECT_TRUE(has(other.err, "found no strobe with the beam 'flash'; allowed: led"));
-    const CommandResult none = beam({rig});
-    EXPECT_EQ(none.status, 2);
-    EXPECT_TRUE(has(none.err, "allowed: RIG:NAME, a beam of a rig, or a .ies, .ldt or .csv file"));
-    EXPECT_EQ(beam({"missing.ies"}).status, 2);
+    refused(beam({rig + ":flash"}), "found no strobe with the beam 'flash'; allowed: led");
+    refused(beam({rig}), "allowed: RIG:NAME, a beam of a rig, or a .ies, .ldt or .csv file");
+    EXPECT_EQ(aphotic(beam({"missing.ies"})).status, 2);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "spectral/manifest.h"
 #include "support/closed_form.h"
 #include "support/command_test.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <regex>
 
 namespace aphotic::chart_test {
 namespace {
@@ -30,23 +30,17 @@ constexpr int kPatch_px = 12;  // each way
 constexpr double kChartError = 1e-4;
 
 std::string rig_text() {
-    std::string rig = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    const auto set = [&](const std::string& key, const std::string& value) {
-        rig = std::regex_replace(
-            rig, std::regex("\\n" + key + " *=[^\\n]*"), "\n" + key + " = " + value);
-    };
-    set("altitude_m", "1.0");
-    set("pitch_deg", "0.0");
-    set("multiple", "0.0");
-    set("resolution", fmt::format("[{}, {}]", kColumns * kPatch_px, kRows * kPatch_px));
-    set("pixel_pitch_um", "100.0");
-    return rig;
+    return with(scene_text("habcam.toml"),
+                {{"altitude_m", "1.0"},
+                 {"pitch_deg", "0.0"},
+                 {"multiple", "0.0"},
+                 {"resolution", fmt::format("[{}, {}]", kColumns * kPatch_px, kRows * kPatch_px)},
+                 {"pixel_pitch_um", "100.0"}});
 }
 
 std::vector<std::string> patches() {
     std::vector<std::string> names;
-    for (const auto& entry :
-         fs::directory_iterator(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches")) {
+    for (const auto& entry : fs::directory_iterator(scene_file("user/chart/patches"))) {
         names.push_back(entry.path().filename().string());
     }
     std::sort(names.begin(), names.end());
@@ -92,8 +86,7 @@ class Chart : public CommandTest {
   protected:
     Chart() {
         for (const std::string& name : names_) {
-            fs::copy_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches/" + name,
-                          path(name));
+            fs::copy_file(scene_file("user/chart/patches/" + name), path(name));
         }
         write_file(path("chart.pov"), scene_text(names_));
     }
@@ -104,8 +97,7 @@ class Chart : public CommandTest {
 TEST_F(Chart, InAirIsItsSpectraIntegratedByHand) {
     ASSERT_EQ(names_.size(), 24U);
     write_file(path("rig.toml"), rig_text());
-    const CommandResult run = aphotic("render rig.toml --scene chart.pov -o out --fitted 27");
-    ASSERT_EQ(run.status, 0) << run.err;
+    done("render rig.toml --scene chart.pov -o out --fitted 27");
     // As many wavelengths as kinds of light, and two: the plan's own error is nothing.
     for (const RuleQuality& quality : read_manifest(path("out")).quality) {
         EXPECT_LT(quality.error, 1e-9);
@@ -115,7 +107,7 @@ TEST_F(Chart, InAirIsItsSpectraIntegratedByHand) {
     rig.seafloor.reflectance = {"white", {300.0, 900.0}, {1.0, 1.0}};
     const double some_nm = 550.0;
     const double flux = rig.strobes[0].spectrum.at(some_nm);
-    const CameraImage image = read_signals(path("out") / "image.exr");
+    const CameraImage image = read_signals(path("out/image.exr"));
     const auto pixels = static_cast<std::size_t>(image.width_px * image.height_px);
     for (int i = 0; i < static_cast<int>(names_.size()); ++i) {
         const std::string& name = names_[static_cast<std::size_t>(i)];
@@ -161,17 +153,13 @@ std::string objects_text(const std::vector<std::string>& names) {
 }
 
 TEST_F(Chart, InWaterIsWhatTheReferenceTraces) {
-    std::string rig =
-        std::regex_replace(rig_text(), std::regex("multiple = 0.0"), "multiple = 1.0");
-    rig = std::regex_replace(rig, std::regex("altitude_m = 1.0"), "altitude_m = 2.0");
-    write_file(path("rig.toml"), rig + objects_text(names_));
-    const CommandResult run = aphotic("validate rig.toml --scene chart.pov -o out");
-    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    write_file(
+        path("rig.toml"),
+        with(rig_text(), {{"multiple", "1.0"}, {"altitude_m", "2.0"}}) + objects_text(names_));
+    done("validate rig.toml --scene chart.pov -o out");
     // One patch of another colour is another chart.
-    std::string swapped = text_of("chart.pov");
-    swapped = std::regex_replace(swapped, std::regex("08-purplish-blue"), "13-blue");
-    write_file(path("chart.pov"), swapped);
-    EXPECT_EQ(aphotic("validate rig.toml --scene chart.pov -o out").status, 1);
+    write_file(path("chart.pov"), replaced(text_of("chart.pov"), "08-purplish-blue", "13-blue"));
+    done("validate rig.toml --scene chart.pov -o out", "", kAnswerIsNo);
 }
 
 }  // namespace

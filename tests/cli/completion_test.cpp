@@ -2,12 +2,10 @@
 //
 // Completion in the shells themselves, held against --help.
 #include "support/command_test.h"
-#include "support/has.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -17,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTimeout_s = 600.0;  // for what hangs
-
 std::set<std::string> words_in(const std::string& text) {
     std::istringstream words(text);
     std::set<std::string> all;
@@ -27,18 +23,12 @@ std::set<std::string> words_in(const std::string& text) {
 }
 
 // The first long name of each line, as --help begins it.
-std::set<std::string> options_in_help(const std::string& help) {
-    const std::regex option("\n  (?:-[a-z], )?(--[a-z0-9-]+)");
+constexpr const char* kOption = "\n  (?:-[a-z], )?(--[a-z0-9-]+)";
+constexpr const char* kCommand = "\n  ([a-z]+) {2,}";
+std::set<std::string> found_in(const std::string& help, const std::string& pattern) {
+    const std::regex name(pattern);
     std::set<std::string> names;
-    for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at)
-        names.insert((*at)[1].str());
-    return names;
-}
-
-std::set<std::string> commands_in_help(const std::string& help) {
-    const std::regex command("\n  ([a-z]+) {2,}");
-    std::set<std::string> names;
-    for (std::sregex_iterator at(help.begin(), help.end(), command), end; at != end; ++at)
+    for (std::sregex_iterator at(help.begin(), help.end(), name), end; at != end; ++at)
         names.insert((*at)[1].str());
     return names;
 }
@@ -52,20 +42,12 @@ class Completion : public CommandTest {
     void SetUp() override { write_file(path("my-rig.toml"), ""); }
 
     void save_script(const std::string& shell, const std::string& name) const {
-        const CommandResult run = aphotic(fmt::format("--completion {}", shell));
-        ASSERT_EQ(run.status, 0) << run.err;
-        write_file(path(name), run.out);
+        write_file(path(name), done(fmt::format("--completion {}", shell)).out);
     }
 
     [[nodiscard]] std::string said_by(const std::string& shell, const Arguments& arguments) const {
-        const fs::path log = path("log");
-        const ProcessEnd end = run_process({.executable = shell,
-                                            .arguments = arguments,
-                                            .folder = folder_.path(),
-                                            .environment = {{"HOME", folder_.path().string()}},
-                                            .log = log},
-                                           kTimeout_s);
-        std::string said = read_text_file(log);
+        const ProcessEnd end = by(shell, arguments, {{"HOME", home_.string()}});
+        std::string said = text_of("log");
         EXPECT_TRUE(end.succeeded()) << shell << ": " << end.words() << "\n" << said;
         return said;
     }
@@ -91,8 +73,7 @@ zpty -w shell "aphotic $2"$'\t'
 zpty -r -m shell out $'*\ngot *\n*'
 print -r -- $out
 )");
-        const std::string said =
-            said_by("/usr/bin/zsh", {"-f", "type.zsh", folder_.path().string(), line});
+        const std::string said = said_by("/usr/bin/zsh", {"-f", "type.zsh", home_.string(), line});
         std::smatch found;
         return std::regex_search(said, found, std::regex("got ([^\r\n]*)")) ? found[1].str() : said;
     }
@@ -114,12 +95,11 @@ using Words = std::set<std::string>;
 
 TEST_F(Completion, BashOffersTheCommandsAndOptionsOfHelp) {
     save_script("bash", "aphotic.bash");
-    const std::set<std::string> commands = commands_in_help(aphotic("--help").out);
+    const std::set<std::string> commands = found_in(aphotic("--help").out, kCommand);
     EXPECT_TRUE(commands.contains("render") && commands.contains("help"));
     EXPECT_EQ(by_bash({""}), commands);
     for (const std::string& command : commands) {
-        const std::set<std::string> options =
-            options_in_help(aphotic(fmt::format("{} --help", command)).out);
+        const std::set<std::string> options = found_in(aphotic(command + " --help").out, kOption);
         EXPECT_TRUE(options.contains("--help")) << command;
         EXPECT_EQ(by_bash(fmt::format("{} --", command)), options) << command;
     }
@@ -167,10 +147,7 @@ TEST_F(Completion, FishCompletes) {
 }
 
 TEST_F(Completion, OfAnotherShellIsRefused) {
-    const CommandResult run = aphotic("--completion tcsh");
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_TRUE(has(run.err, "tcsh not in {bash,zsh,fish}"));
+    refused("--completion tcsh", "tcsh not in {bash,zsh,fish}");
 }
 
 }  // namespace

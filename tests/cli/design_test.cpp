@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A design as a user asks for one: what it leaves, and what its numbers say.
-#include "base/atomic_file.h"
 #include "support/command_test.h"
-#include "support/has.h"
 #include "support/small_scene.h"
-#include "support/temp_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,16 +25,14 @@ namespace fs = std::filesystem;
 
 class CommandDesign : public CommandTest {
   protected:
-    void SetUp() override { put_small_scene(APHOTIC_SOURCE_DIR "/scenes/habcam.toml", at("")); }
+    void SetUp() override { put_small_scene("habcam.toml", home_); }
 
-    [[nodiscard]] fs::path at(const std::string& name) const { return path(name); }
-
-    [[nodiscard]] CommandResult design(const std::string& rig, const Arguments& more) const {
-        return aphotic(fmt::format("design {} --altitude 1.5,2.5 --evaluations 200", rig) + more);
+    static Arguments design(const std::string& rig, const Arguments& more) {
+        return "design --altitude 1.5,2.5 --evaluations 200 " + rig + more;
     }
 
     [[nodiscard]] nlohmann::json numbers(const std::string& folder) const {
-        return nlohmann::json::parse(read_text_file(at(folder) / "design.json"));
+        return json_in(folder + "/design.json");
     }
 };
 
@@ -47,24 +42,19 @@ Arguments tilts_into(const std::string& folder) {
 
 // A design that is designed again starts at the figures that the first ended with.
 TEST_F(CommandDesign, LeavesARigThatIsAsEvenAsItSays) {
-    const CommandResult run = design("rig.toml", tilts_into("out"));
-    ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_TRUE(fs::exists(at("out/report.html")));
+    done(design("rig.toml", tilts_into("out")));
+    EXPECT_TRUE(fs::exists(path("out/report.html")));
     const nlohmann::json found = numbers("out");
     EXPECT_GT(found["design"]["worst"]["evenness"], found["start"]["worst"]["evenness"]);
     EXPECT_GE(found["design"]["worst"]["coverage"], found["start"]["worst"]["coverage"]);
 
-    const CommandResult again = design("out/designed.toml", tilts_into("again"));
-    ASSERT_EQ(again.status, 0) << again.err;
+    done(design("out/designed.toml", tilts_into("again")));
     EXPECT_EQ(numbers("again")["start"]["worst"]["evenness"], found["design"]["worst"]["evenness"]);
 }
 
 TEST_F(CommandDesign, TheSameCommandGivesTheSameDesign) {
-    for (const char* folder : {"one", "other"}) {
-        const CommandResult run = design("rig.toml", tilts_into(folder));
-        ASSERT_EQ(run.status, 0) << run.err;
-    }
-    EXPECT_EQ(read_text_file(at("one/designed.toml")), read_text_file(at("other/designed.toml")));
+    for (const char* folder : {"one", "other"}) done(design("rig.toml", tilts_into(folder)));
+    EXPECT_EQ(text_of("one/designed.toml"), text_of("other/designed.toml"));
 }
 
 // Each of the options that bound a search, by what it does to the strobes.
@@ -76,7 +66,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
     const auto place = [](const nlohmann::json& one) {
         return one.at("position_m").get<std::array<double, 3>>();
     };
-    ASSERT_EQ(design("rig.toml", "--vary strobe.*.position_m --within 0.02 -o near").status, 0);
+    done(design("rig.toml", "--vary strobe.*.position_m --within 0.02 -o near"));
     double farthest = 0.0;
     for (std::size_t s = 0; s < 4; ++s) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -88,10 +78,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
     }
     EXPECT_GT(farthest, 0.01);  // where there is room, it is used
 
-    const std::string bounds = "fore=0.45:0.55,0,-0.3:0.3";
-    const CommandResult box =
-        design("rig.toml", fmt::format("--vary strobe.*.position_m --box {} -o box", bounds));
-    ASSERT_EQ(box.status, 0) << box.err;
+    done(design("rig.toml", "--vary strobe.*.position_m --box fore=0.45:0.55,0,-0.3:0.3 -o box"));
     const auto [x, y, z] = place(strobe("box", "design", 0));
     EXPECT_GE(x, 0.45 - kRounding);
     EXPECT_LE(x, 0.55 + kRounding);
@@ -99,9 +86,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
     EXPECT_LE(std::abs(z), 0.3 + kRounding);
     EXPECT_NE(place(strobe("box", "design", 0)), place(strobe("box", "start", 0)));
 
-    Arguments turned = tilts_into("turned");
-    turned += "--turn 2";
-    ASSERT_EQ(design("rig.toml", turned).status, 0);
+    done(design("rig.toml", tilts_into("turned") + "--turn 2"));
     for (std::size_t s = 0; s < 4; ++s) {
         const auto before = strobe("turned", "start", s).at("direction").get<std::vector<double>>();
         const auto after = strobe("turned", "design", s).at("direction").get<std::vector<double>>();
@@ -113,8 +98,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
 
 TEST_F(CommandDesign, SearchesForWhatItIsAskedFor) {
     const auto worst = [&](const std::string& folder, const Arguments& more) {
-        const CommandResult run = design("rig.toml", tilts_into(folder) + more);
-        EXPECT_EQ(run.status, 0) << run.err;
+        done(design("rig.toml", tilts_into(folder) + more));
         return numbers(folder).at("design").at("worst");
     };
     const nlohmann::json even = worst("even", "--keep 0.7");
@@ -135,9 +119,7 @@ TEST_F(CommandDesign, SearchesForWhatItIsAskedFor) {
 }
 
 TEST_F(CommandDesign, JudgesEveryPoseOfItsEnvelope) {
-    const CommandResult run =
-        design("rig.toml", tilts_into("out") + "--pitch 0,10 --roll=-5,5 --seed 2");
-    ASSERT_EQ(run.status, 0) << run.err;
+    done(design("rig.toml", tilts_into("out") + "--pitch 0,10 --roll=-5,5 --seed 2"));
     const nlohmann::json found = numbers("out");
     EXPECT_EQ(found["seed"], 2);
     const nlohmann::json& poses = found.at("design").at("poses");
@@ -156,11 +138,9 @@ TEST_F(CommandDesign, JudgesEveryPoseOfItsEnvelope) {
 }
 
 TEST_F(CommandDesign, NamesWhatMayVary) {
-    const CommandResult run = design("rig.toml", "--vary strobe.*.aim.tilt_dg -o out --json");
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_TRUE(has(run.err, "rig.toml: --vary: found strobe.*.aim.tilt_dg; allowed: "));
-    EXPECT_FALSE(fs::exists(at("out")));
+    refused(design("rig.toml", "--vary strobe.*.aim.tilt_dg -o out --json"),
+            "rig.toml: --vary: found strobe.*.aim.tilt_dg; allowed: ");
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 }  // namespace

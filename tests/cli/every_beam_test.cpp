@@ -92,16 +92,13 @@ void write_rig(const std::filesystem::path& folder, const Kind& kind, bool has_p
     write_file(folder / "one.csv", "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.4\n90,0\n");
 }
 
-class EveryBeam : public testing::TestWithParam<std::tuple<Kind, bool>> {};
+class EveryBeam : public CommandTest, public testing::WithParamInterface<std::tuple<Kind, bool>> {};
 
 TEST_P(EveryBeam, Validates) {
     const auto& [kind, has_port] = GetParam();
-    const TempFolder folder;
-    write_rig(folder.path(), kind, has_port);
-    const CommandResult run = run_aphotic(
-        folder.path(), "validate rig.toml -o out --per-frame 1 --wavelengths 450,550,650 --json");
-    ASSERT_EQ(run.status, 0) << run.out << run.err;
-    const auto json = nlohmann::json::parse(run.out);
+    write_rig(home_, kind, has_port);
+    const auto json =
+        json_by("validate rig.toml -o out --per-frame 1 --wavelengths 450,550,650 --json");
     ASSERT_EQ(json.at("wavelengths").size(), 3U);
     for (const auto& wavelength : json.at("wavelengths")) {
         EXPECT_LE(wavelength.at("max_error").get<double>(), kHalfFloatBound) << wavelength.dump();
@@ -144,20 +141,14 @@ using BeamTableFile = CommandTest;
 
 // A table is part of the rig: what was rendered by another is neither kept nor weighed.
 TEST_F(BeamTableFile, ThatChangesChangesTheFrames) {
-    write_rig(folder_.path(), {"OneAngle", "table = \"one.csv\"", true}, false);
+    write_rig(home_, {"OneAngle", "table = \"one.csv\"", true}, false);
     const Arguments render("render rig.toml -o out --wavelengths 450,550,650");
-    const auto rendered = [&] {
-        const CommandResult run = aphotic(render);
-        EXPECT_EQ(run.status, 0) << run.err;
-        return run.out;
-    };
+    const auto rendered = [&] { return done(render).out; };
     EXPECT_TRUE(has(rendered(), "1 frame rendered, 0 kept"));
     EXPECT_TRUE(has(rendered(), "0 frames rendered, 1 kept"));
 
     write_file(path("one.csv"), "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.3\n90,0\n");
-    const CommandResult integrated = aphotic("integrate out --rig rig.toml");
-    EXPECT_EQ(integrated.status, 2) << integrated.out;
-    EXPECT_TRUE(has(integrated.err, "beam"));
+    refused("integrate out --rig rig.toml", "beam");
     EXPECT_TRUE(has(rendered(), "1 frame rendered, 0 kept"));
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Frames as 16-bit PNG, by a POV-Ray that says it has no OpenEXR and by one that has.
-#include "image/exr.h"
 #include "support/command_test.h"
-#include "support/has.h"
+#include "support/exr_file.h"
+#include "support/scene_text.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <regex>
 #include <string>
 #include <vector>
@@ -33,69 +32,52 @@ class FrameFormatOption : public CommandTest {
             "if [ \"$1\" = --version ]; then povray --version 2>&1 | sed 's/ openexr//' >&2\n"
             "else exec povray \"$@\"; fi\n");
     }
-    void put(const char* scene) const {
-        put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes" / scene, path(""));
-    }
     void make_water_scatter() const {
-        std::string toml = text_of("rig.toml");
-        toml = std::regex_replace(toml,
-                                  std::regex(R"(absorption = .*\n *(multiple .*\n)?)"),
-                                  "chlorophyll_mg_m3 = 0.05\n");
-        toml = std::regex_replace(toml, std::regex(R"(\[400, 720\])"), "[400, 700]");
-        write_file(path("rig.toml"), toml);
+        const std::string toml =
+            std::regex_replace(text_of("rig.toml"),
+                               std::regex(R"(absorption = .*\n *(multiple .*\n)?)"),
+                               "chlorophyll_mg_m3 = 0.05\n");
+        write_file(path("rig.toml"), with(toml, {{"range_nm", "[400, 700]"}}));
     }
     [[nodiscard]] CommandResult run_without_openexr(const Arguments& arguments) const {
         return aphotic(arguments, {{"APHOTIC_POVRAY", path("povray").string()}});
     }
     [[nodiscard]] std::vector<float> image(const std::string& folder) const {
-        return ExrReader(path(folder) / "image.exr")
-            .planes(std::vector<std::string>{"R", "G", "B"});
+        return read_exr(path(folder + "/image.exr"));
     }
 };
 
 TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
-    put("habcam.toml");
-    const CommandResult refused = run_without_openexr("render rig.toml -o exr");
-    EXPECT_EQ(refused.status, 3);
-    EXPECT_TRUE(has(refused.err,
-                    "built without OpenEXR, in which frames are written; --frame-format "
-                    "png16 does without"));
+    put_small_scene("habcam.toml", home_);
+    refused(run_without_openexr("render rig.toml -o exr"),
+            "built without OpenEXR, in which frames are written; --frame-format png16 does without",
+            kRunFailed);
     EXPECT_FALSE(fs::exists(path("exr")));
 
-    const CommandResult rendered =
-        run_without_openexr("render rig.toml --frame-format png16 -o png");
-    ASSERT_EQ(rendered.status, 0) << rendered.err;
-    EXPECT_TRUE(has(rendered.out, "frames were PNG"));
-    const CommandResult validated = aphotic("validate rig.toml --rendered png -o validation");
-    EXPECT_EQ(validated.status, 0) << validated.out << validated.err;
+    done(run_without_openexr("render rig.toml --frame-format png16 -o png"), "frames were PNG");
+    done("validate rig.toml --rendered png -o validation");
 
-    const CommandResult own =
-        run_without_openexr("render --frame-format png16 -o own" +
-                            Arguments{APHOTIC_SOURCE_DIR "/scenes/user/reef/reef.toml"});
-    EXPECT_EQ(own.status, 3);
-    EXPECT_TRUE(has(own.err, "in which a scene of your own is measured"));
+    refused(run_without_openexr("render --frame-format png16 -o own" +
+                                Arguments{APHOTIC_SOURCE_DIR "/scenes/user/reef/reef.toml"}),
+            "in which a scene of your own is measured",
+            kRunFailed);
 }
 
 // By half floats and by PNG, each within its promise: with a frame of fog, which is white above the
 // horizon.
 TEST_F(FrameFormatOption, ShowsTheSame) {
-    put("objects.toml");
+    put_small_scene("objects.toml", home_);
     make_water_scatter();
-    std::string toml = text_of("rig.toml");
-    toml = std::regex_replace(toml, std::regex(R"(altitude_m .*)"), "altitude_m = 3");
-    toml = std::regex_replace(toml, std::regex(R"(pitch_deg .*)"), "pitch_deg = 80");
-    write_file(path("rig.toml"), toml);
+    write_file(path("rig.toml"),
+               with(text_of("rig.toml"), {{"altitude_m", "3"}, {"pitch_deg", "80"}}));
     const auto render = [&](const char* format) {
         return aphotic(
             fmt::format("render rig.toml --frame-format {0} --wavelengths 478,576,638 "
                         "--model-tolerance 1 --json -o {0}",
                         format));
     };
-    const CommandResult halves = render("exr");
-    ASSERT_EQ(halves.status, 0) << halves.err;
-    const CommandResult made = render("png16");
-    ASSERT_EQ(made.status, 0) << made.err;
-    const Json json = Json::parse(made.out);
+    done(render("exr"));
+    const Json json = json_by(render("png16"));
     const double digits_from = json.at("digits_from");
     EXPECT_GT(digits_from, 0.0);
     EXPECT_LT(digits_from, 0.5);
@@ -118,13 +100,11 @@ TEST_F(FrameFormatOption, ShowsTheSame) {
 }
 
 TEST_F(FrameFormatOption, IsRefusedWhereItCannotServe) {
-    put("habcam.toml");
-    const CommandResult result = aphotic("render rig.toml --frame-format tiff -o out");
-    EXPECT_EQ(result.status, 2);
+    put_small_scene("habcam.toml", home_);
+    refused("render rig.toml --frame-format tiff -o out", "--frame-format");
     make_water_scatter();
-    const CommandResult veil = aphotic("render rig.toml --frame-format png16 --veil povray -o out");
-    EXPECT_EQ(veil.status, 2);
-    EXPECT_TRUE(has(veil.err, "--frame-format: found png16 with --veil povray"));
+    refused("render rig.toml --frame-format png16 --veil povray -o out",
+            "--frame-format: found png16 with --veil povray");
 }
 
 }  // namespace

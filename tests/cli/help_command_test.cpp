@@ -17,8 +17,7 @@ using HelpCommand = CommandTest;
 
 TEST_F(HelpCommand, PrintsWhatTheOptionDoes) {
     const auto out = [&](const Arguments& arguments) {
-        const CommandResult run = aphotic(arguments);
-        EXPECT_EQ(run.status, 0) << run.err;
+        const CommandResult run = done(arguments);
         EXPECT_EQ(run.err, "");
         return run.out;
     };

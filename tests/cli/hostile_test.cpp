@@ -3,23 +3,19 @@
 // Rigs and folders that were made to do harm: their texts stay texts, for POV-Ray, for its settings
 // and for a shell. tests/scene_gen/rig_reader_test.cpp has what is refused when a rig is read,
 // tests/validation/*_browser_test.cpp what a browser makes of such names.
-#include "image/exr.h"
 #include "support/command_test.h"
-#include "support/has.h"
+#include "support/exr_file.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <nlohmann/json.hpp>
 
-#include <regex>
-
 namespace aphotic::hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kBadInput = 2;
 
 constexpr const char* kMud = "wavelength_nm,reflectance\n300,0.25\n900,0.5\n";
 constexpr const char* kClay = "wavelength_nm,reflectance\n300,0.75\n900,0.125\n";
@@ -114,54 +110,38 @@ void put_rig(const fs::path& folder, const Texts& texts) {
     write_file(folder / texts.flash, kFlash);
 }
 
-std::vector<float> samples_of(const fs::path& file) {
-    ExrReader image(file);
-    const std::vector<std::string> channels{"R", "G", "B"};
-    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
-                               static_cast<std::size_t>(image.height_px()));
-    image.read_rows(0, image.height_px(), channels, samples);
-    return samples;
-}
-
 using Hostile = CommandTest;
 
 TEST_F(Hostile, TextsOfARigChangeNoBitOfItsImage) {
-    const TempFolder folder;
+    const auto render = [&](const std::string& name) {
+        done(run_aphotic(path(name), "render rig.toml -o out --fitted 3"));
+        return read_exr(path(name + "/out/image.exr"));
+    };
     const auto rendered = [&](const std::string& name, const Texts& texts) {
-        put_rig(folder.path() / name, texts);
-        const CommandResult run =
-            run_aphotic(folder.path() / name, "render rig.toml -o out --fitted 3");
-        EXPECT_EQ(run.status, 0) << run.err;
-        return samples_of(folder.path() / name / "out" / "image.exr");
+        put_rig(path(name), texts);
+        return render(name);
     };
     const std::vector<float> innocent = rendered("innocent", kInnocent);
     for (std::size_t i = 0; i < kHostile.size(); ++i) {
         EXPECT_EQ(rendered(std::to_string(i), kHostile[i]), innocent) << kHostile[i].title;
-        EXPECT_FALSE(fs::exists(folder.path() / std::to_string(i) / "owned"));
+        EXPECT_FALSE(fs::exists(path(std::to_string(i) + "/owned")));
     }
     // The test sees a difference where there is one.
-    write_file(folder.path() / "innocent" / kInnocent.clay, kMud);
-    EXPECT_NE(samples_of(folder.path() / "0" / "out" / "image.exr"), [&] {
-        const CommandResult run =
-            run_aphotic(folder.path() / "innocent", "render rig.toml -o out --fitted 3");
-        EXPECT_EQ(run.status, 0) << run.err;
-        return samples_of(folder.path() / "innocent" / "out" / "image.exr");
-    }());
+    write_file(path("innocent/" + kInnocent.clay), kMud);
+    EXPECT_NE(read_exr(path("0/out/image.exr")), render("innocent"));
 }
 
 const std::vector<std::string> kFolderNames{
     "it's \"so\"", "-o", "two\nlines", "K\xC3\xB6ln", "; #x = %s{} $(touch owned)"};
 
 TEST_F(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
-    put_rig(folder_.path(), kInnocent);
-    ASSERT_EQ(aphotic("render rig.toml -o out --fitted 3").status, 0);
-    const std::vector<float> expected = samples_of(path("out") / "image.exr");
+    put_rig(home_, kInnocent);
+    done("render rig.toml -o out --fitted 3");
+    const std::vector<float> expected = read_exr(path("out/image.exr"));
     for (const std::string& name : kFolderNames) {
         put_rig(path(name), kInnocent);
-        const CommandResult run = aphotic(
-            {"render", "./" + name + "/rig.toml", "--output=" + name + "/out", "--fitted", "3"});
-        EXPECT_EQ(run.status, 0) << name << ": " << run.err;
-        EXPECT_EQ(samples_of(path(name) / "out" / "image.exr"), expected) << name;
+        done({"render", "./" + name + "/rig.toml", "--output=" + name + "/out", "--fitted", "3"});
+        EXPECT_EQ(read_exr(path(name) / "out" / "image.exr"), expected) << name;
     }
     EXPECT_FALSE(fs::exists(path("owned")));
 }
@@ -169,45 +149,32 @@ TEST_F(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
 // POV-Ray reads "a[b]" as the section b of the settings a.
 // JSON must be UTF-8, names of folders need not.
 TEST_F(Hostile, FoldersOfAnyNameAreToldInJson) {
-    write_file(path("rig.toml"),
-               read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml"));
-    const CommandResult run =
-        aphotic({"generate", "rig.toml", "-o", "\xff\xfe", "--wavelengths", "550", "--json"});
-    EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(nlohmann::json::parse(run.out).at("folder"), "\uFFFD\uFFFD");
+    write_file(path("rig.toml"), scene_text("one-lamp.toml"));
+    const auto json = json_by("generate rig.toml --wavelengths 550 --json -o \xff\xfe");
+    EXPECT_EQ(json.at("folder"), "\uFFFD\uFFFD");
 }
 
 TEST_F(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
-    put_rig(folder_.path(), kInnocent);
-    const CommandResult run = aphotic("render rig.toml -o a[b] --fitted 3");
-    EXPECT_EQ(run.status, kBadInput);
-    EXPECT_TRUE(has(run.err, "a[b]: found a '['"));
-    EXPECT_FALSE(fs::exists(path("a[b]")));
+    put_rig(home_, kInnocent);
+    refused("render rig.toml -o a[b] --fitted 3", "a[b]: found a '['");
 }
 
 // The lines that generate prints go through a shell, with a POV-Ray that says what it is given.
 TEST_F(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
     for (const std::string& name : kFolderNames) {
-        put_rig(folder_.path(), kInnocent);
+        put_rig(home_, kInnocent);
         const fs::path out = path("called");
         fs::remove(out);
         fs::create_directory(path("bin"));
         write_script(
-            path("bin") / "povray",
+            path("bin/povray"),
             "pwd >> '" + out.string() + "'\nprintf '%s\\n' \"$@\" >> '" + out.string() + "'\n");
         const CommandResult run =
-            aphotic({"generate", "rig.toml", "--output=" + name, "--wavelengths", "500"});
-        ASSERT_EQ(run.status, 0) << run.err;
+            done({"generate", "rig.toml", "--output=" + name, "--wavelengths", "500"});
         const std::size_t from = run.out.find("  (cd ");
         const std::size_t to = run.out.find("done)\n") + 5;
         ASSERT_LT(from, to) << run.out;
-        const ProcessEnd end = run_process(
-            {.executable = "/bin/sh",
-             .arguments = {"-c", "PATH=$PWD/bin:$PATH\n" + run.out.substr(from, to - from)},
-             .folder = folder_.path(),
-             .environment = {},
-             .log = path("log")},
-            60.0);
+        const ProcessEnd end = by_shell("PATH=$PWD/bin:$PATH\n" + run.out.substr(from, to - from));
         EXPECT_TRUE(end.succeeded()) << text_of("log");
         EXPECT_EQ(
             read_text_file(out),
@@ -218,35 +185,28 @@ TEST_F(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
 
 // A scene of the user's own brings the folder's path into POV-Ray's settings.
 TEST_F(Hostile, FolderThatWouldAddASettingIsRefused) {
-    put_rig(folder_.path(), kInnocent);
+    put_rig(home_, kInnocent);
     write_file(path("own.pov"),
                "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
                "Aphotic_Seafloor (2, 0, 0, \"sand\")\n");
     for (const std::string name : {"x\nOutput_File_Name=owned", "x\" y"}) {
-        const CommandResult run = aphotic(
-            {"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"});
-        EXPECT_EQ(run.status, kBadInput) << run.out;
-        EXPECT_TRUE(has(run.err, "for POV-Ray cannot read them"));
-        EXPECT_FALSE(fs::exists(path(name)));
+        refused({"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"},
+                "for POV-Ray cannot read them");
     }
 }
 
 // A pipe that nobody writes to, and a device without end, in the place of a frame.
 TEST_F(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
-    put_rig(folder_.path(), kInnocent);
-    ASSERT_EQ(aphotic("render rig.toml -o out --wavelengths 500").status, 0);
-    const fs::path frame = path("out") / "povray" / "frames" / "band_500nm.exr";
-    const auto expect_refused = [&] {
-        const CommandResult run = aphotic("integrate out");
-        EXPECT_EQ(run.status, 3) << run.out;
-        EXPECT_TRUE(has(run.err, "band_500nm.exr: cannot be read"));
-    };
+    put_rig(home_, kInnocent);
+    done("render rig.toml -o out --wavelengths 500");
+    const fs::path frame = path("out/povray/frames/band_500nm.exr");
+    const char* why = "band_500nm.exr: cannot be read";
     fs::remove(frame);
     ASSERT_EQ(::mkfifo(frame.c_str(), 0600), 0);
-    expect_refused();
+    refused("integrate out", why, kRunFailed);
     fs::remove(frame);
     fs::create_symlink("/dev/zero", frame);
-    expect_refused();
+    refused("integrate out", why, kRunFailed);
 }
 
 }  // namespace

@@ -1,54 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The model error estimate, as the commands tell it.
-#include "base/atomic_file.h"
 #include "image/exr.h"
 #include "support/command_test.h"
 #include "support/has.h"
+#include "support/scene_text.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <regex>
 #include <string>
 #include <vector>
 
 namespace aphotic::model_error_test {
 namespace {
 
-constexpr int kBadInput = 2;
-
 class CommandModelError : public CommandTest {
   protected:
     void SetUp() override {
-        std::string text =
-            read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [24, 15]");
-        text = std::regex_replace(
-            text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 470.0");
         // The range of Jerlov's types.
-        clear_ = std::regex_replace(
-            text, std::regex(R"(\n\s*range_nm\s*=[^\n]*)"), "\nrange_nm = [400, 700]");
+        clear_ = with(
+            scene_text("habcam-led.toml"),
+            {{"resolution", "[24, 15]"}, {"pixel_pitch_um", "470.0"}, {"range_nm", "[400, 700]"}});
         water_is(R"(type = "jerlov-1C")");
     }
 
     void water_is(const std::string& keys) const {
-        write_file(path("rig.toml"),
-                   std::regex_replace(
-                       clear_, std::regex(R"(\nabsorption = "pope-fry-1997")"), "\n" + keys));
+        write_file(path("rig.toml"), replaced(clear_, R"(absorption = "pope-fry-1997")", keys));
     }
 
     std::string clear_;
 };
 
 TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
-    const CommandResult plan = aphotic("plan rig.toml --json");
-    ASSERT_EQ(plan.status, 0) << plan.err;
-    const auto json = nlohmann::json::parse(plan.out);
-    const CommandResult map = aphotic("lightmap rig.toml -o map.exr");
-    ASSERT_EQ(map.status, 0) << map.err;
-    EXPECT_TRUE(has(map.out, "what the model of scattering leaves out is estimated at 0.0"));
+    const auto json = json_by("plan rig.toml --json");
+    done("lightmap rig.toml -o map.exr",
+         "what the model of scattering leaves out is estimated at 0.0");
     const std::string noted = ExrReader(path("map.exr")).attribute("aphotic:model_error");
     double red = 0.0;
     double green = 0.0;
@@ -66,22 +53,16 @@ TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
                                 "trace rig.toml -o out",
                                 "lightmap rig.toml -o map.exr",
                                 "lightmap rig.toml -o out --altitude 1:2:1"}) {
-        const CommandResult refused = aphotic(command + "--model-tolerance 1e-9");
-        EXPECT_EQ(refused.status, kBadInput) << command.front();
-        EXPECT_TRUE(has(refused.err,
-                        "in what the model of water that scatters leaves out: light "
-                        "that is turned more than once, and blur; allowed: "
-                        "--model-tolerance 1e-09"));
-        EXPECT_FALSE(std::filesystem::exists(path("out"))) << command.front();
-        EXPECT_FALSE(std::filesystem::exists(path("map.exr"))) << command.front();
+        refused(
+            command + "--model-tolerance 1e-9",
+            "in what the model of water that scatters leaves out: light that is turned more than "
+            "once, and blur; allowed: --model-tolerance 1e-09");
     }
 }
 
 TEST_F(CommandModelError, IsOfEachMapByAltitude) {
     const auto json_of = [&](const Arguments& options) {
-        const CommandResult made = aphotic("lightmap rig.toml --json" + options);
-        EXPECT_EQ(made.status, 0) << made.err;
-        return nlohmann::json::parse(made.out);
+        return json_by("lightmap rig.toml --json" + options);
     };
     const auto maps = json_of("-o out --altitude 1,3")["maps"];
     ASSERT_EQ(maps.size(), 2U);
@@ -90,12 +71,9 @@ TEST_F(CommandModelError, IsOfEachMapByAltitude) {
 }
 
 TEST_F(CommandModelError, IsNoneOfWaterThatDoesNotScatterNorWithoutItsVeil) {
-    EXPECT_EQ(aphotic("lightmap rig.toml -o map.exr --no-veil").out.find("leaves out"),
-              std::string::npos);
+    EXPECT_FALSE(has(done("lightmap rig.toml -o map.exr --no-veil").out, "leaves out"));
     water_is(R"(absorption = "pope-fry-1997")");
-    const CommandResult plan = aphotic("plan rig.toml --json --model-tolerance 1e-9");
-    ASSERT_EQ(plan.status, 0) << plan.err;
-    EXPECT_FALSE(nlohmann::json::parse(plan.out).contains("model_error"));
+    EXPECT_FALSE(json_by("plan rig.toml --json --model-tolerance 1e-9").contains("model_error"));
 }
 
 }  // namespace

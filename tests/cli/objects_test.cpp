@@ -2,8 +2,8 @@
 //
 // Things on the floor through both renderers: scenes/objects.toml with its sphere, box and mesh in
 // the light of four strobes of three cones, in water, and tilted both ways.
-#include "support/has.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
+#include "support/scene_text.h"
 #include "support/small_scene.h"
 
 #include <gtest/gtest.h>
@@ -18,35 +18,22 @@ constexpr double kHalfFloatError = 6e-4;
 // a strip. So much of 136 x 102 pixels may go uncompared, and no more.
 constexpr int kMostOnEdges = 136 * 102 / 300;
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_TRUE(has(text, from)) << from;
-    return text.replace(text.find(from), from.size(), to);
-}
+class Objects : public CommandTest, public testing::WithParamInterface<bool> {};
 
-// The small scene has 34 x 25 pixels; four times as many each way show more of the shadows.
-void put_rig(const std::filesystem::path& folder, bool has_port) {
-    put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder);
-    std::string text = read_text_file(folder / "rig.toml");
-    text = replaced(text, "[34, 25]", "[136, 102]");
-    text = replaced(text, "pixel_pitch_um = 258", "pixel_pitch_um = 64.5");
-    text = replaced(text, "roll_deg   = 0.0", "roll_deg   = -4.0");
-    if (has_port) {
+TEST_P(Objects, ValidateInWaterTilted) {
+    // The small scene has 34 x 25 pixels; four times as many each way show more of the shadows.
+    put_small_scene("objects.toml", home_);
+    std::string text =
+        with(text_of("rig.toml"),
+             {{"resolution", "[136, 102]"}, {"pixel_pitch_um", "64.5"}, {"roll_deg", "-4.0"}});
+    if (GetParam()) {
         text = replaced(text,
                         "[water]",
                         "[camera.port]\nshape = \"flat\"\ndistance_mm = 50.0\n"
                         "thickness_mm = 12.0\nglass = \"bk7\"\n\n[water]");
     }
-    write_file(folder / "rig.toml", text);
-}
-
-class Objects : public testing::TestWithParam<bool> {};
-
-TEST_P(Objects, ValidateInWaterTilted) {
-    const TempFolder folder;
-    put_rig(folder.path(), GetParam());
-    const CommandResult run = run_aphotic(folder.path(), "validate rig.toml -o out --json");
-    ASSERT_EQ(run.status, 0) << run.out << run.err;
-    const auto json = nlohmann::json::parse(run.out);
+    write_file(path("rig.toml"), text);
+    const auto json = json_by("validate rig.toml -o out --json");
     for (const auto& wavelength : json.at("wavelengths")) {
         EXPECT_LE(wavelength.at("max_error").get<double>(), kHalfFloatError) << wavelength.dump();
         EXPECT_EQ(wavelength.at("bound").get<double>(), kHalfFloatError) << "no shift is allowed";

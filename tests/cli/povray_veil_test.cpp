@@ -5,15 +5,13 @@
 #include "image/output_images.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
-#include "support/has.h"
+#include "support/scene_text.h"
 #include "support/small_scene.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace aphotic::povray_veil_command_test {
 namespace {
@@ -22,24 +20,16 @@ class PovrayVeilCommand : public CommandTest {
   protected:
     PovrayVeilCommand() {
         // Smooth beams, in water that scatters; 17 x 12 pixels.
-        std::string rig = small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-        rig = std::regex_replace(
-            rig, std::regex(R"(resolution = \[34, 25\])"), "resolution = [17, 12]");
-        rig = std::regex_replace(
-            rig, std::regex(R"(pixel_pitch_um = [0-9.]+)"), "pixel_pitch_um = 516");
-        rig = std::regex_replace(rig,
-                                 std::regex(R"(absorption = "pope-fry-1997")"),
-                                 "type = \"jerlov-1C\"\nphase = { henyey_greenstein = 0.924 }");
-        rig = std::regex_replace(rig, std::regex(R"(\[400, 720\])"), "[400, 700]");
+        std::string rig =
+            replaced(with(small_scene("habcam.toml", 80), {{"range_nm", "[400, 700]"}}),
+                     "absorption = \"pope-fry-1997\"",
+                     "type = \"jerlov-1C\"\nphase = { henyey_greenstein = 0.924 }");
         const std::size_t beam = rig.find("weights = \"flux\"");
         rig = rig.substr(0, beam) + "fwhm_deg = 80\n\n" + rig.substr(rig.find("[[strobe]]"));
         write_file(path("rig.toml"), rig);
     }
-    nlohmann::json rendered(const std::string& folder, Arguments more) {
-        more = fmt::format("render rig.toml -o {} --json", folder) + more;
-        const CommandResult run = aphotic(more);
-        EXPECT_EQ(run.status, 0) << run.err;
-        return run.status == 0 ? nlohmann::json::parse(run.out) : nlohmann::json();
+    nlohmann::json rendered(const std::string& folder, const Arguments& more) {
+        return json_by("render rig.toml --json -o " + folder + more);
     }
     [[nodiscard]] std::vector<float> signals(const std::string& folder) const {
         return read_signals(path(folder) / "image.exr").samples;
@@ -65,9 +55,7 @@ TEST_F(PovrayVeilCommand, KeepsItsFramesAndIntegratesThem) {
     const std::vector<float> image = signals("out");
     const auto again = rendered("out", "--veil povray");
     EXPECT_EQ(again.at("frames_rendered"), 0);
-    const CommandResult integrated = aphotic("integrate out");
-    EXPECT_EQ(integrated.status, 0) << integrated.err;
-    EXPECT_TRUE(has(integrated.out, "which is no bound"));
+    done("integrate out", "which is no bound");
     EXPECT_EQ(signals("out"), image);
     // Other samples make other frames, and only of the veil.
     const auto finer = rendered("out", "--veil povray --veil-samples 60");
@@ -79,15 +67,14 @@ TEST_F(PovrayVeilCommand, KeepsItsFramesAndIntegratesThem) {
 }
 
 TEST_F(PovrayVeilCommand, IsValidatedOverTheBareFloor) {
-    const CommandResult run = aphotic("validate rig.toml --veil povray -o out");
-    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    done("validate rig.toml --veil povray -o out");
     // A veil that is 5 % too bright does not pass.
     Manifest manifest = read_manifest(path("out"));
     for (PlannedWavelength& w : manifest.wavelengths)
         for (double& weight : w.veil->weight) weight *= 1.05;
     write_manifest(path("out"), manifest);
-    ASSERT_EQ(aphotic("integrate out").status, 0);
-    EXPECT_EQ(aphotic("validate rig.toml --veil povray --rendered out -o v").status, 1);
+    done("integrate out");
+    done("validate rig.toml --veil povray --rendered out -o v", "", kAnswerIsNo);
 }
 
 // The reference leaves out the shadows, and nothing bounds what samples find of them.
@@ -96,9 +83,7 @@ TEST_F(PovrayVeilCommand, IsNotValidatedWithObjects) {
                text_of("rig.toml") +
                    "\n[[object]]\nname = \"ball\"\nshape = \"sphere\"\n"
                    "centre_m = [0.3, 0.2, 1.2]\nradius_m = 0.25\nreflectance = \"sand\"\n");
-    const CommandResult run = aphotic("validate ball.toml --veil povray -o out");
-    EXPECT_EQ(run.status, 2) << run.out << run.err;
-    EXPECT_TRUE(has(run.err, "shadows"));
+    refused("validate ball.toml --veil povray -o out", "shadows");
 }
 
 // Colours that are numbers are not black in the veil's frames: what they show is taken off.

@@ -9,7 +9,7 @@
 #include "scene_gen/veil_planes.h"
 #include "spectral/manifest.h"
 #include "support/command_test.h"
-#include "support/has.h"
+#include "support/scene_text.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,6 @@
 namespace aphotic::sabotage_test {
 namespace {
 
-constexpr int kAnswerIsNo = 1;
 // A floor and lamps without symmetry, few pixels; each entry changes one line of it.
 const Arguments kWavelengths("--wavelengths 470,550,620");
 
@@ -38,20 +37,9 @@ const std::string kMostAbsorbed = "620 nm";
 const std::string kAnyChannel = "R|G|B";
 const std::string kAllOfThem = kAnyWavelength + "|" + kAnyChannel;
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_TRUE(has(text, from)) << "nothing to spoil: " << from;
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
-    }
-    return text;
-}
-
 std::string honest_rig() {
-    std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    text = std::regex_replace(text, std::regex(R"(\nresolution[^\n]*)"), "\nresolution = [34, 26]");
-    text = std::regex_replace(
-        text, std::regex(R"(\npixel_pitch_um[^\n]*)"), "\npixel_pitch_um = 258.0");
-    return replaced(text, "roll_deg   = 0.0", "roll_deg   = 3.0");
+    return with(scene_text("habcam.toml"),
+                {{"resolution", "[34, 26]"}, {"pixel_pitch_um", "258.0"}, {"roll_deg", "3.0"}});
 }
 
 std::string rig_behind_a_port() {
@@ -100,11 +88,10 @@ const Arguments kAnyModel("--model-tolerance 1");
 class Sabotage : public CommandTest {
   protected:
     void expect_no(const std::string& worst, const CommandResult& run) {
-        EXPECT_EQ(run.status, kAnswerIsNo) << run.out << run.err;
-        EXPECT_TRUE(has(run.out, "DISAGREE"));
+        done(run, "DISAGREE", kAnswerIsNo);
         const std::regex named("worst against its bound: (" + worst + ") at column");
         EXPECT_TRUE(std::regex_search(run.out, named)) << "not " << worst << ": " << run.out;
-        const auto json = nlohmann::json::parse(read_text_file(path("out") / "validation.json"));
+        const auto json = json_in("out/validation.json");
         EXPECT_FALSE(json.at("holds").get<bool>());
         for (const char* list : {"wavelengths", "channels"}) {
             for (const auto& one : json.at(list)) {
@@ -119,16 +106,12 @@ class Sabotage : public CommandTest {
     }
 
     double worst_error() {
-        const auto json = nlohmann::json::parse(read_text_file(path("out") / "validation.json"));
-        return json.at("worst").at("max_error").get<double>();
+        return json_in("out/validation.json").at("worst").at("max_error").get<double>();
     }
 
     CommandResult validate(const Arguments& more,
                            const std::map<std::string, std::string>& environment = {}) {
-        Arguments arguments("validate rig.toml -o out");
-        arguments += kAnyModel;
-        arguments += more;
-        return aphotic(arguments, environment);
+        return aphotic("validate rig.toml -o out" + kAnyModel + more, environment);
     }
 
     // Several tests spoil the same rig, whose honest render need pass but once.
@@ -143,7 +126,7 @@ class Sabotage : public CommandTest {
                                    const std::string& rig = honest_rig()) {
         write_file(path("rig.toml"), rig);
         if (is_first("validate", rig)) {
-            EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
+            done(validate(kWavelengths));  // the honest render must pass
             std::filesystem::remove_all(path("out"));
         }
         // The first of several at once edits, the others wait.
@@ -159,7 +142,7 @@ class Sabotage : public CommandTest {
                          "  while [ ! -f edited ]; do sleep 0.05; done\n"
                          "fi\n"
                          "exec povray \"$@\"\n");
-        expect_no(worst, validate(kWavelengths, {{"APHOTIC_POVRAY", (path("povray")).string()}}));
+        expect_no(worst, validate(kWavelengths, {{"APHOTIC_POVRAY", path("povray").string()}}));
     }
 
     // The render is of another rig than the one it is held against.
@@ -171,18 +154,14 @@ class Sabotage : public CommandTest {
         write_file(path("spoilt.toml"), spoilt);
         if (is_first("render", honest)) {
             render("rig.toml", "honest", wavelengths);
-            EXPECT_EQ(validate("--rendered honest").status, 0) << "the honest render must pass";
+            done(validate("--rendered honest"));  // the honest render must pass
         }
         render("spoilt.toml", "spoilt", wavelengths);
         expect_no(worst, validate("--rendered spoilt"));
     }
 
     void render(const std::string& rig, const std::string& to, const Arguments& wavelengths) {
-        Arguments arguments(fmt::format("render {} -o {}", rig, to));
-        arguments += kAnyModel;
-        arguments += wavelengths;
-        const CommandResult run = aphotic(arguments);
-        ASSERT_EQ(run.status, 0) << run.err;
+        done(fmt::format("render {} -o {}", rig, to) + kAnyModel + wavelengths);
     }
 
     // The frames are right, the manifest by which they are put together is not.
@@ -190,11 +169,11 @@ class Sabotage : public CommandTest {
                                         const std::function<void(Manifest&)>& spoil) {
         write_file(path("rig.toml"), honest_rig());
         render("rig.toml", "spoilt", kWavelengths);
-        EXPECT_EQ(validate("--rendered spoilt").status, 0) << "the honest render must pass";
+        done(validate("--rendered spoilt"));  // the honest render must pass
         Manifest manifest = read_manifest(path("spoilt"));
         spoil(manifest);
         write_manifest(path("spoilt"), manifest);
-        ASSERT_EQ(aphotic("integrate spoilt").status, 0);
+        done("integrate spoilt");
         expect_no(worst, validate("--rendered spoilt"));
     }
 
@@ -212,7 +191,7 @@ class Sabotage : public CommandTest {
         write_file(path("rig.toml"), rig_in_scattering_water());
         render("rig.toml", "spoilt", kWavelengths);
         take_veil(redo);
-        EXPECT_EQ(validate("--rendered spoilt").status, 0) << "the honest render must pass";
+        done(validate("--rendered spoilt"));  // the honest render must pass
         take_veil(spoil);
         expect_no(kAllOfThem, validate("--rendered spoilt"));
     }
@@ -222,8 +201,7 @@ class Sabotage : public CommandTest {
         Manifest manifest = read_manifest(folder);
         manifest.veil = make(folder, read_rig(path("rig.toml")), manifest);
         write_manifest(folder, manifest);
-        const CommandResult run = aphotic("integrate spoilt");
-        ASSERT_EQ(run.status, 0) << run.err;
+        done("integrate spoilt");
     }
 
     // The veil of another rig.
@@ -236,7 +214,7 @@ class Sabotage : public CommandTest {
 
     // scenes/objects.toml, in a folder that has its mesh.
     std::string rig_with_objects() {
-        put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder_.path());
+        put_small_scene("objects.toml", home_);
         return text_of("rig.toml");
     }
 };

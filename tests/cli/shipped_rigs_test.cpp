@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/command_test.h"
 #include "support/small_scene.h"
-#include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +13,7 @@ using ShippedRigs = CommandTest;
 TEST_F(ShippedRigs, AllHaveAPlan) {
     ASSERT_FALSE(all_scenes().empty());
     for (const std::filesystem::path& scene : all_scenes()) {
-        const CommandResult plan = aphotic({"plan", scene.string()});
-        EXPECT_EQ(plan.status, 0) << plan.err;
+        done({"plan", scene.string()});
     }
 }
 

@@ -3,9 +3,10 @@
 // Names of files and cells of tables that steer a terminal, feign a message of ours or have no end,
 // through every command that reads: what is printed of them is plain, and has an end.
 #include "base/printable.h"
-#include "image/exr.h"
 #include "support/command_test.h"
+#include "support/exr_file.h"
 #include "support/has.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,11 +20,6 @@ namespace aphotic::terminal_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = Arguments;
-
-constexpr int kDone = 0;
-constexpr int kAnswerIsNo = 1;
-constexpr int kBadInput = 2;
 
 // Clears the screen, rings, goes back to the line's beginning, and says that all is well.
 constexpr const char* kEvil = "\x1b[2J\x1b]0;x\x07\r\naphotic: done\xC2\x9B";
@@ -45,18 +41,13 @@ void expect_plain(const std::string& said, const std::string& what) {
 class Terminal : public CommandTest {
   protected:
     Terminal() {
-        const std::string habcam =
-            read_text_file(fs::path(APHOTIC_SOURCE_DIR) / "scenes/habcam.toml");
-        write_file(path("rig.toml"), habcam);
-        const std::vector<float> grey(3 * 20 * 12, 0.5F);
-        ExrWriter image(path("a.exr"), 20, 12, {"R", "G", "B"}, {});
-        image.write_rows(12, grey);
-        image.finish();
+        write_file(path("rig.toml"), scene_text("habcam.toml"));
+        write_exr(path("a.exr"), 20, std::vector<float>(3 * 20 * 12, 0.5F));
         write_file(path("nav.csv"), "image,altitude_m,pitch_deg,roll_deg\na.exr,2,0,0\n");
     }
 
     // One message, of some kind of refusal.
-    void expect_refused(const Words& arguments, const std::string& shown = "") {
+    void expect_refused(const Arguments& arguments, const std::string& shown = "") {
         const CommandResult run = aphotic(arguments);
         const std::string what = arguments.front() + " said: " + printable(run.err.substr(0, 300));
         EXPECT_TRUE(run.status == kBadInput || run.status == kAnswerIsNo) << what;
@@ -71,7 +62,7 @@ class Terminal : public CommandTest {
 TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsNotThere) {
     const std::string evil = kEvil;
     const std::string shown = kEvilAsShown;
-    const std::vector<Words> commands{
+    const std::vector<Arguments> commands{
         {"plan", evil + ".toml"},
         {"lightmap", evil + ".toml", "-o", "m.exr"},
         {"trace", evil + ".toml", "-o", "out"},
@@ -94,22 +85,22 @@ TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsNotThere) {
         {"plan", "rig.toml", "--tolerance", evil},
         {"plan", "rig.toml", "--" + evil},
         {evil}};
-    for (const Words& command : commands) expect_refused(command, shown);
+    for (const Arguments& command : commands) expect_refused(command, shown);
 }
 
 TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsThere) {
     const std::string evil = kEvil;
     fs::copy_file(path("a.exr"), path(evil + ".exr"));
     fs::copy_file(path("rig.toml"), path(evil + ".toml"));
-    const std::vector<Words> commands{
+    const std::vector<Arguments> commands{
         {"compare", evil + ".exr", "a.exr"},
         {"plan", evil + ".toml", "--bands", "3"},
         {"observe", evil + ".exr", "a.exr", "--nav", "nav.csv", "--altitude", "2", "-o", "m.exr"},
         {"observe", "a.exr", "--nav", "nav.csv", "--altitude", "2", "-o", evil + ".map.exr"}};
-    for (const Words& command : commands) {
+    for (const Arguments& command : commands) {
         const CommandResult run = aphotic(command);
         const std::string what = printable(fmt::format("{}", fmt::join(command, " ")));
-        EXPECT_TRUE(run.status == kDone || run.status == kAnswerIsNo || run.status == kBadInput)
+        EXPECT_TRUE(run.status == 0 || run.status == kAnswerIsNo || run.status == kBadInput)
             << what << run.err;
         expect_plain(run.out + run.err, what + ": " + printable(run.out + run.err));
     }
@@ -126,11 +117,11 @@ TEST_F(Terminal, IsNotFloodedOrSteeredByACell) {
     const auto rig_with = [&](const std::string& key, const std::string& value) {
         return fmt::format("{} = \"{}\"\n{}", key, value, habcam);
     };
-    const Words observe{"observe", "a.exr", "--nav", "cell", "--altitude", "2", "-o", "m.exr"};
-    const Words plan{"plan", "cell.toml"};
+    const Arguments observe("observe a.exr --nav cell --altitude 2 -o m.exr");
+    const Arguments plan("plan cell.toml");
     for (const std::string& cell :
          {std::string(kLongCell_bytes, 'x'), "\x1b[2J\x07" + std::string("aphotic: done")}) {
-        const std::vector<std::pair<std::string, Words>> files{
+        const std::vector<std::pair<std::string, Arguments>> files{
             {nav + "a.exr," + cell + ",0,0\n", observe},
             {nav + "a.exr,2,0,0\na.exr,2,0,0\n" + cell + "\n", observe},
             {cell + "," + nav + "a.exr,2,0,0\n", observe},
@@ -145,14 +136,12 @@ TEST_F(Terminal, IsNotFloodedOrSteeredByACell) {
             expect_refused(arguments);
         }
         write_file(path("mud.csv"), csv + "400," + cell + "\n");
-        std::string mud = habcam;
-        mud += "\n[material.mud]\nreflectance = \"mud.csv\"\n";
-        write_file(path("cell.toml"), mud);
+        write_file(path("cell.toml"), habcam + "\n[material.mud]\nreflectance = \"mud.csv\"\n");
         expect_refused(plan);
         write_file(path("beam.ies"), "IESNA:LM-63-2002\nTILT=" + cell + "\n");
-        expect_refused({"beam", "beam.ies"});
+        expect_refused("beam beam.ies");
         write_file(path("splines.inc"), "#declare A = spline { linear_spline 300, " + cell);
-        expect_refused({"data", "--from-spline", "splines.inc"});
+        expect_refused("data --from-spline splines.inc");
     }
 }
 
@@ -160,10 +149,10 @@ TEST_F(Terminal, IsNotFloodedOrSteeredByACell) {
 TEST_F(Terminal, IsToldOfQuestionMarksInThePathsOfImages) {
     write_file(path("a?b=c.tif"), "no image");
     write_file(path("a%04d#.tif"), "no image");
-    expect_refused({"baseline", "local-equalisation", "a?b=c.tif", "-o", "out"},
+    expect_refused("baseline local-equalisation a?b=c.tif -o out",
                    "found a question mark in the path");
-    expect_refused({"compare", "a?b=c.tif", "a.exr"}, "found a question mark in the path");
-    expect_refused({"compare", "a%04d#.tif", "a.exr"}, "a%04d#.tif: cannot be read: ");
+    expect_refused("compare a?b=c.tif a.exr", "found a question mark in the path");
+    expect_refused("compare a%04d#.tif a.exr", "a%04d#.tif: cannot be read: ");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Every scene of the project, small, through both renderers.
 #include "support/command_test.h"
 #include "support/has.h"
+#include "support/scene_text.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -14,19 +15,15 @@
 namespace aphotic::validate_test {
 namespace {
 
-class EveryScene : public testing::TestWithParam<std::filesystem::path> {};
+class EveryScene : public CommandTest, public testing::WithParamInterface<std::filesystem::path> {};
 
 TEST_P(EveryScene, Validates) {
-    const TempFolder folder;
-    put_small_scene(GetParam(), folder.path());
-    const CommandResult run =
-        run_aphotic(folder.path(), "validate rig.toml -o out --wavelengths 410,470,550,620,700");
-    EXPECT_EQ(run.status, 0) << run.out << run.err;
-    const auto json =
-        nlohmann::json::parse(read_text_file(folder.path() / "out" / "validation.json"));
+    put_small_scene(GetParam(), home_);
+    done("validate rig.toml -o out --wavelengths 410,470,550,620,700");
+    const auto json = json_in("out/validation.json");
     EXPECT_EQ(json.at("wavelengths").size(), 5U);
     EXPECT_EQ(json.at("channels").size(), 3U);
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / "report.html"));
+    EXPECT_TRUE(std::filesystem::exists(path("out/report.html")));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -43,34 +40,27 @@ using Validate = CommandTest;
 // The reference's share of veil is the lightmap's, and stands on the page.
 TEST_F(Validate, TellsHowMuchIsVeil) {
     constexpr double kOfBoth = 1e-3;  // of the share: both know the veil to 1e-4
-    std::string rig = small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.replace(rig.find("[400, 720]"), 10, "[400, 700]");
-    const std::string clear = "absorption = \"pope-fry-1997\"";
-    rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
-    write_file(path("rig.toml"), rig);
-    const CommandResult run = aphotic("validate rig.toml -o out --json --model-tolerance 1");
-    ASSERT_EQ(run.status, 0) << run.out << run.err;
-    const auto traced = nlohmann::json::parse(run.out).at("veil_in_the_middle");
-    const CommandResult map = aphotic("lightmap rig.toml -o map.exr --json --model-tolerance 1");
-    const auto mapped = nlohmann::json::parse(map.out).at("veil_in_the_middle");
+    const std::string rig = with(small_scene("habcam.toml"), {{"range_nm", "[400, 700]"}});
+    write_file(path("rig.toml"),
+               replaced(rig, "absorption = \"pope-fry-1997\"", "type = \"jerlov-1C\""));
+    const auto traced =
+        json_by("validate rig.toml -o out --json --model-tolerance 1").at("veil_in_the_middle");
+    const auto mapped =
+        json_by("lightmap rig.toml -o map.exr --json --model-tolerance 1").at("veil_in_the_middle");
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_GT(mapped[c].get<double>(), 0.1);
         EXPECT_NEAR(traced[c].get<double>() / mapped[c].get<double>(), 1.0, kOfBoth) << c;
     }
-    EXPECT_NE(read_text_file(path("out") / "report.html").find("Veil in the middle"),
-              std::string::npos);
+    EXPECT_TRUE(has(text_of("out/report.html"), "Veil in the middle"));
 }
 
 // Wavelengths that share a frame behind a port may be shifted, and their bound is the wider for it.
 // Each in a frame of its own has none of that.
 TEST_F(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
     constexpr double kHalfFloatBound = 6e-4;
-    write_file(path("rig.toml"),
-               small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml"));
-    const CommandResult run =
-        aphotic("validate rig.toml -o out --per-frame 1 --wavelengths 410,470,550,620,700 --json");
-    ASSERT_EQ(run.status, 0) << run.out << run.err;
-    const auto json = nlohmann::json::parse(run.out);
+    write_file(path("rig.toml"), small_scene("port.toml"));
+    const auto json =
+        json_by("validate rig.toml -o out --per-frame 1 --wavelengths 410,470,550,620,700 --json");
     EXPECT_EQ(json.at("frames"), 5);
     ASSERT_EQ(json.at("wavelengths").size(), 5U);
     for (const auto& wavelength : json.at("wavelengths")) {
@@ -81,11 +71,8 @@ TEST_F(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
 
 // Equal bands: their error is most of the promise, and nearly reached.
 TEST_F(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
-    write_file(path("rig.toml"),
-               small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
-    const CommandResult run = aphotic("validate rig.toml -o out --bands 9 --json");
-    ASSERT_EQ(run.status, 0) << run.err;
-    const auto json = nlohmann::json::parse(run.out);
+    write_file(path("rig.toml"), small_scene("habcam.toml"));
+    const auto json = json_by("validate rig.toml -o out --bands 9 --json");
     for (const auto& channel : json.at("channels")) {
         const double promised = channel.at("bound").get<double>();
         const double found = channel.at("max_error").get<double>();
@@ -96,14 +83,12 @@ TEST_F(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
 using Trace = CommandTest;
 
 TEST_F(Trace, LeavesImagesWithoutPovRayAndThreadsChangeNoBit) {
-    write_file(path("rig.toml"),
-               small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml"));
+    write_file(path("rig.toml"), small_scene("port.toml"));
     const std::map<std::string, std::string> no_povray{{"APHOTIC_POVRAY", "/no/povray"}};
     for (const std::string threads : {"1", "3"}) {
-        const CommandResult run = aphotic(
+        done(aphotic(
             fmt::format("trace rig.toml -o {0} --threads {0} --wavelengths 470,550", threads),
-            no_povray);
-        ASSERT_EQ(run.status, 0) << run.err;
+            no_povray));
     }
     for (const char* file : {"image.exr", "spectral.exr", "preview.png"}) {
         EXPECT_EQ(read_text_file(path("1") / file), read_text_file(path("3") / file)) << file;
@@ -114,12 +99,9 @@ TEST_F(Trace, LeavesImagesWithoutPovRayAndThreadsChangeNoBit) {
 // across some.
 TEST_F(Trace, SaysWhereItsErrorsDoNotHold) {
     for (const std::string scene : {"habcam", "habcam-emitters", "port"}) {
-        write_file(path("rig.toml"),
-                   small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml"));
-        const CommandResult run = aphotic("trace rig.toml -o out");
-        ASSERT_EQ(run.status, 0) << run.err;
-        EXPECT_TRUE(has(run.out, "of a signal off the edges"));
-        const auto json = nlohmann::json::parse(read_text_file(path("out") / "trace.json"));
+        write_file(path("rig.toml"), small_scene(scene + ".toml"));
+        const CommandResult run = done("trace rig.toml -o out", "of a signal off the edges");
+        const auto json = json_in("out/trace.json");
         const bool has_emitters = scene == "habcam-emitters";
         EXPECT_EQ(run.out.find("pixels on the edge of") != std::string::npos, scene != "habcam")
             << run.out;
@@ -139,25 +121,20 @@ using Compare = CommandTest;
 
 // `compare` reads any format: here a PNG against itself, and two EXRs that differ.
 TEST_F(Compare, SaysYesAndNo) {
-    write_file(path("rig.toml"),
-               small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
-    ASSERT_EQ(aphotic("trace rig.toml -o a").status, 0);
-    std::string brighter = text_of("rig.toml");
+    write_file(path("rig.toml"), small_scene("habcam.toml"));
+    done("trace rig.toml -o a");
     // One strobe of four brighter by a thousandth: up to 1e-3 in its cone, and nowhere more.
-    brighter += "power = 1.001\n";
-    write_file(path("brighter.toml"), brighter);
-    ASSERT_EQ(aphotic("trace brighter.toml -o b").status, 0);
+    write_file(path("brighter.toml"), text_of("rig.toml") + "power = 1.001\n");
+    done("trace brighter.toml -o b");
 
-    EXPECT_EQ(aphotic("compare a/preview.png a/preview.png").status, 0);
-    const CommandResult no = aphotic("compare b/image.exr a/image.exr --bound 1e-4 --json");
-    EXPECT_EQ(no.status, 1) << no.err;
-    const auto told = nlohmann::json::parse(no.out);
+    done("compare a/preview.png a/preview.png");
+    const auto told = json_by("compare b/image.exr a/image.exr --bound 1e-4 --json", kAnswerIsNo);
     for (const auto& channel : told.at("channels")) {
         EXPECT_LE(channel.at("max_error").get<double>(), 1e-3 * (1.0 + 1e-3));
         EXPECT_GT(channel.at("max_error").get<double>(), 5e-4);
         EXPECT_GT(channel.at("mean_error").get<double>(), 0.0) << "the sign of e";
     }
-    EXPECT_EQ(aphotic("compare b/image.exr a/image.exr --bound 1.1e-3").status, 0);
+    done("compare b/image.exr a/image.exr --bound 1.1e-3");
     EXPECT_EQ(aphotic("compare a/image.exr no.exr").status, 2);
 }
 
