@@ -173,18 +173,15 @@ TEST(VeilMap, IsAsRightAsItsTolerance) {
     }
 }
 
-// But where the rule along the ray is off by as much, as at lobes of a high power.
+// Of a part alone, for the rule along a ray has other points for a beam of several.
 TEST(VeilMap, OfBeamsOfEveryKindIsAsRightAsItsTolerance) {
-    constexpr double kLittle = 1e-5;
-    int rigs = 0;
     for (const BeamKind kind : kBeamKinds) {
         for (int i = 0; i < 2; ++i) {
             Dice dice(7300 + static_cast<std::uint64_t>(i));
             Rig rig = coast(400, 180);
-            for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
+            for (Strobe& strobe : rig.strobes)
+                strobe.beam = parts_of(random_beam_of(kind, dice)).front();
             if (i == 1) give_lens(LensKind::Fisheye, dice, rig.camera);
-            if (veil_error(rig, kVeilMapPoints) > kLittle) continue;
-            ++rigs;
             for (const double tolerance : {kVeilOfSignal, 1e-3}) {
                 LightmapOptions asked = options();
                 asked.veil_tolerance = tolerance;
@@ -193,7 +190,6 @@ TEST(VeilMap, OfBeamsOfEveryKindIsAsRightAsItsTolerance) {
             }
         }
     }
-    EXPECT_GE(rigs, 6);
 }
 
 // A streak of light across the view that is narrower than the places of a tile are apart: of a
