@@ -77,8 +77,8 @@ BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
 
 // HabCam in coastal water, beside the floor's light alone: the veil's goal is ten times as long.
 
-Rig coast(const std::string& name = "habcam") {
-    Rig rig = scene(name);
+Rig coast(const std::string& of = "habcam") {
+    Rig rig = scene(of);
     const auto line = [](const char* name, double blue, double red) {
         return Spectrum(name, {300.0, 400.0, 700.0, 900.0}, {blue, blue, red, red});
     };

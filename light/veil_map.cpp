@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -278,7 +279,9 @@ void VeilMap::paint(const Sled& sled,
         if (rig_.strobes[veil_.strobe_of_part()[part]].power > 0.0) parts.push_back(part);
     std::vector<VeilTiles> by_thread(static_cast<std::size_t>(threads),
                                      VeilTiles(*this, sled, rays, floor, tolerance));
-    paint_tiles(by_thread, parts, kVeilTile_px, rows);
+    const auto quarter_px = static_cast<unsigned>(std::max(rows.width_px, rows.height_px)) / 4;
+    const int tile_px = static_cast<int>(std::bit_floor(quarter_px));
+    paint_tiles(by_thread, parts, std::clamp(tile_px, kLeastVeilTile_px, kVeilTile_px), rows);
 }
 
 }  // namespace aphotic

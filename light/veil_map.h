@@ -40,7 +40,10 @@
 
 namespace aphotic {
 
+// Smaller ones in images that have fewer than four along their longer side, down to the least: each
+// tile is one thread's.
 inline constexpr int kVeilTile_px = 256;
+inline constexpr int kLeastVeilTile_px = 32;
 // What maps and renders are off by at most, of the signal.
 inline constexpr double kVeilOfSignal = 1e-4;
 inline constexpr std::size_t kVeilPlanes = kTilePlanes;  // of one map, at most
