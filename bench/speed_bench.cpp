@@ -77,8 +77,8 @@ BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
 
 // HabCam in coastal water, beside the floor's light alone: the veil's goal is ten times as long.
 
-Rig coast() {
-    Rig rig = scene();
+Rig coast(const std::string& of = "habcam") {
+    Rig rig = scene(of);
     const auto line = [](const char* name, double blue, double red) {
         return Spectrum(name, {300.0, 400.0, 700.0, 900.0}, {blue, blue, red, red});
     };
@@ -87,20 +87,34 @@ Rig coast() {
     return rig;
 }
 
-void lightmap_in_coastal_water(benchmark::State& state, bool has_veil, int threads) {
-    const Rig rig = coast();
-    const LightmapMaker maker(
-        rig, std::nullopt, {.error = 1e-5, .threads = threads, .has_veil = has_veil});
+void map_with(benchmark::State& state, const Rig& rig, const LightmapOptions& options) {
+    const LightmapMaker maker(rig, std::nullopt, options);
     Lightmap map;
     for (auto _ : state) {
         maker.map_into(rig.sled, map);
         benchmark::DoNotOptimize(map.samples.data());
     }
 }
+
+void lightmap_in_coastal_water(benchmark::State& state, bool has_veil, int threads) {
+    map_with(state, coast(), {.error = 1e-5, .threads = threads, .has_veil = has_veil});
+}
 BENCHMARK_CAPTURE(lightmap_in_coastal_water, floor, false, kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_in_coastal_water, veil, true, kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_in_coastal_water, floor_one_thread, false, 1)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_in_coastal_water, veil_one_thread, true, 1)->Apply(least_of_many);
+
+// To a correction's tolerance; sharp cones and smooth beams.
+void veil_to(benchmark::State& state, const std::string& name, double tolerance) {
+    map_with(state, coast(name), {.error = 1e-5, .threads = 1, .veil_tolerance = tolerance});
+}
+BENCHMARK_CAPTURE(veil_to, cones_1e3, "habcam", 1e-3)->Apply(least_of_many);
+BENCHMARK_CAPTURE(veil_to, smooth_1e3, "habcam-led", 1e-3)->Apply(least_of_many);
+BENCHMARK_CAPTURE(veil_to, smooth_1e4, "habcam-led", 1e-4)->Apply(least_of_many);
+void floor_beside_it(benchmark::State& state, const std::string& name) {
+    map_with(state, coast(name), {.error = 1e-5, .threads = 1, .has_veil = false});
+}
+BENCHMARK_CAPTURE(floor_beside_it, smooth, "habcam-led")->Apply(least_of_many);
 
 // The same strobes with other beams, by one thread: over habcam_one_thread, what a kind costs.
 

@@ -38,6 +38,7 @@ struct CorrectCommandOptions {
     SurveyInput input;
     std::string map;
     bool no_veil = false;
+    double tolerance = kVeilOfCorrection;
     double model_tolerance = kModelTolerance;
     std::string ifdo;
     std::vector<double> altitudes_m;
@@ -161,7 +162,8 @@ Task rig_task(const CorrectCommandOptions& options) {
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     survey.navigation = read_navigation(options.input, survey.files, &rig);
     survey.light = naming(file, [&] {
-        return light_of_rig(rig, *survey.navigation, survey.files, !options.no_veil);
+        return light_of_rig(
+            rig, *survey.navigation, survey.files, !options.no_veil, options.tolerance);
     });
     survey.light.rig_size = own;
     expect_size_of(survey.light, survey.camera);
@@ -256,9 +258,11 @@ ExitStatus correct(CorrectCommandOptions options) {
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
+    constexpr double kMostTolerance = 0.1;
     add_option(app, "--rig", options.input.rig);
     add_navigation_options(app, options.input);
     add_option(app, "--map", options.map);
+    add_option(app, "--tolerance", options.tolerance)->check(in_range(0.0, kMostTolerance));
     add_flag(app, "--no-veil", options.no_veil);
     add_option(app, "--altitude", options.altitudes_m)
         ->delimiter(',')

@@ -411,6 +411,7 @@ Action configure_lightmap(CLI::App& app) {
     add_flag(app, "--per-cone", options->per_cone)->excludes(exported);
     add_flag(app, "--normalised", options->normalised)->excludes(exported);
     add_option(app, "--error", options->map.error)->check(in_range(kLeastError, kMostError));
+    add_option(app, "--tolerance", options->map.veil_tolerance)->check(in_range(0.0, kMostError));
     add_flag(app, "--no-veil", [options] { options->map.has_veil = false; });
     add_model_tolerance(app, options->model_tolerance);
     add_strict_option(app, options->strict);

@@ -121,8 +121,12 @@ Json flight_settings(const SurveyCommandOptions& options) {
 }
 
 Json light_settings(const SurveyCommandOptions& options, const Rig& rig) {
-    if (!is_by_povray(options, rig)) return {{"by", "lightmap"}};
     const PlanningOptions& planning = options.planning;
+    if (!is_by_povray(options, rig)) {
+        Json light{{"by", "lightmap"}};
+        if (rig.water.scatters()) light["tolerance"] = planning.plan.tolerance;
+        return light;
+    }
     Json light{{"by", "povray"},
                {"tolerance", planning.plan.tolerance},
                {"fitted", planning.plan.fitted.value_or(0)},
@@ -180,6 +184,7 @@ SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
         relative_exposure(survey.camera.shot, {.reference = shot_of(survey.rig.camera.readout)});
     const bool by_povray = is_by_povray(options, survey.rig);
     survey.texture = by_povray ? 0.0 : options.texture;
+    survey.tolerance = options.planning.plan.tolerance;
     survey.made_by = {{"flight", flight_settings(options)},
                       {"light", light_settings(options, survey.rig)}};
     if (!options.declared.empty() && scene_of(options, survey.rig).empty())

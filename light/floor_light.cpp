@@ -22,15 +22,6 @@ constexpr std::array<std::size_t, kLooks> kLookOrder{2, 0, 4, 1, 3};
 constexpr std::array<std::array<double, kIndexNodes>, kLooks - kIndexNodes> kHalfWay{
     {{0.75, 0.375, -0.125}, {0.75, -0.125, 0.375}}};
 
-// The wavelengths of PlaceRays.
-std::vector<double> looks_nm(const Rig& rig) {
-    if (!rig.camera.port) return index_nodes_nm(rig);
-    const std::vector<double> nodes_nm = index_nodes_nm(rig, kLooks);
-    std::vector<double> looks;
-    for (const std::size_t node : kLookOrder) looks.push_back(nodes_nm[node]);
-    return looks;
-}
-
 // As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     constexpr double kMostLamps = 1e5;  // a map adds up the lamps pixel by pixel
@@ -69,8 +60,19 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
     }
 }
 
+std::vector<double> place_rays_nm(const Rig& rig) {
+    if (!rig.camera.port) return index_nodes_nm(rig);
+    const std::vector<double> nodes_nm = index_nodes_nm(rig, kLooks);
+    std::vector<double> looks;
+    for (const std::size_t node : kLookOrder) looks.push_back(nodes_nm[node]);
+    return looks;
+}
+
 CameraRays::CameraRays(const Rig& rig, int threads)
-    : has_port_(rig.camera.port.has_value()), table_(rig, looks_nm(rig), threads) {}
+    : has_port_(rig.camera.port.has_value()), table_(rig, place_rays_nm(rig), threads) {}
+
+CameraRays::CameraRays(const Rig& rig, double lambda_nm, int threads)
+    : has_port_(false), table_(rig, {lambda_nm}, threads) {}
 
 PlaceRays CameraRays::at(double column, double row, const Plane& floor, bool looks) const {
     std::array<WaterRay, kLooks> found;

@@ -63,17 +63,22 @@ inline constexpr double kMostDoubt = 1e-5;
 inline constexpr std::size_t kLooks = 2 * kIndexNodes - 1;
 using PlaceRays = std::array<FloorRay, kLooks>;
 
+// Their wavelengths: of a camera without a port the first alone.
+[[nodiscard]] std::vector<double> place_rays_nm(const Rig& rig);
+
 // The rays of a camera at the indices of light, whatever the sled.
 class CameraRays {
   public:
     CameraRays(const Rig& rig, int threads);
+    // All light takes the ray of this wavelength.
+    CameraRays(const Rig& rig, double lambda_nm, int threads);
 
     [[nodiscard]] std::size_t nodes() const { return has_port_ ? kIndexNodes : 1; }
     // At pixels' centres and between them. Those that are looked along only if asked for.
     [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
 
   private:
-    bool has_port_;
+    bool has_port_;  // whose rays differ
     RayTable table_;
 };
 

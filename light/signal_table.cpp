@@ -5,7 +5,6 @@
 #include "spectral/light_family.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 
 namespace aphotic {
@@ -20,20 +19,6 @@ constexpr double kDispersedShare = 1e-4;
 constexpr double kLebesgue = 5.0 / 4.0;
 
 using Grid = std::vector<WeightedWavelength>;
-using LightOf = std::function<double(double lambda_nm)>;
-
-SpectralSum spectral_sum(const Rig& rig, const Grid& grid, const LightOf& light) {
-    const auto count = static_cast<Eigen::Index>(grid.size());
-    SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
-        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
-        const double value = light(node.lambda_nm);
-        for (Eigen::Index c = 0; c < kChannels; ++c)
-            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
-    }
-    return sum;
-}
 
 // Of the grid, what any channel sees.
 Grid seen_of(const Grid& grid) {
@@ -42,18 +27,6 @@ Grid seen_of(const Grid& grid) {
         return std::ranges::any_of(node.weight, [](double weight) { return weight != 0.0; });
     });
     return seen;
-}
-
-// The lamp spectra, each once, and which of them each strobe has.
-std::vector<const Spectrum*> lamps_of(const Rig& rig, std::vector<std::size_t>& by_strobe) {
-    std::vector<const Spectrum*> lamps;
-    for (const Strobe& strobe : rig.strobes) {
-        const auto known = std::ranges::find_if(
-            lamps, [&](const Spectrum* lamp) { return is_same_curve(*lamp, strobe.spectrum); });
-        by_strobe.push_back(static_cast<std::size_t>(known - lamps.begin()));
-        if (known == lamps.end()) lamps.push_back(&strobe.spectrum);
-    }
-    return lamps;
 }
 
 // What a lamp's light is on the floor, and bare, of which the floor's highlight is made.
@@ -94,6 +67,30 @@ LampSignal signal_of(const Rig& rig,
 }
 
 }  // namespace
+
+SpectralSum spectral_sum(const Rig& rig, const Grid& grid, const LightOf& light) {
+    const auto count = static_cast<Eigen::Index>(grid.size());
+    SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
+        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
+        const double value = light(node.lambda_nm);
+        for (Eigen::Index c = 0; c < kChannels; ++c)
+            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
+    }
+    return sum;
+}
+
+std::vector<const Spectrum*> lamps_of(const Rig& rig, std::vector<std::size_t>& by_strobe) {
+    std::vector<const Spectrum*> lamps;
+    for (const Strobe& strobe : rig.strobes) {
+        const auto known = std::ranges::find_if(
+            lamps, [&](const Spectrum* lamp) { return is_same_curve(*lamp, strobe.spectrum); });
+        by_strobe.push_back(static_cast<std::size_t>(known - lamps.begin()));
+        if (known == lamps.end()) lamps.push_back(&strobe.spectrum);
+    }
+    return lamps;
+}
 
 SignalTable signal_table(const Rig& rig, const PathRange& paths, double error) {
     SignalTable table;

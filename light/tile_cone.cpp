@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/tile_cone.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,17 +24,33 @@ std::array<std::array<double, 2>, kTilePlaces> tile_places(int width, int height
              {2.0 * x, 2.0 * y}}};
 }
 
-TileCone tile_cone(const Vector3d& lamp_m, std::span<const FloorRay> rays) {
-    TileCone cone{.middle = towards(lamp_m, rays.front()).normalized()};
+namespace {
+
+// Of what each ray has, of any length.
+template <typename Way>
+TileCone cone_about(std::span<const FloorRay> rays, const Way& way_of) {
+    TileCone cone{.middle = way_of(rays.front()).normalized()};
     double widest2 = 0.0;  // squares of chords
     for (const FloorRay& ray : rays) {
         cone.sees_all &= ray.sees_floor();
         cone.sees_any |= ray.sees_floor();
-        const Vector3d way = towards(lamp_m, ray).normalized();
+        const Vector3d way = way_of(ray).normalized();
         widest2 = std::max(widest2, (way - cone.middle).squaredNorm());
     }
     cone.radius_rad = kTileRoom * 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(widest2)));
     return cone;
+}
+
+}  // namespace
+
+TileCone tile_cone(const Vector3d& lamp_m, std::span<const FloorRay> rays) {
+    return cone_about(rays, [&](const FloorRay& ray) { return towards(lamp_m, ray); });
+}
+
+TileCone plane_cone(const Vector3d& lamp_m, std::span<const FloorRay> rays) {
+    return cone_about(rays, [&](const FloorRay& ray) -> Vector3d {
+        return (ray.origin_m - lamp_m).cross(ray.direction);
+    });
 }
 
 bool comes_into(const TileCone& cone, const Crease& crease) {

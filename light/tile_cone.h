@@ -35,4 +35,7 @@ struct TileCone {
 // Whether a crease may come within the cone. False is certain.
 [[nodiscard]] bool comes_into(const TileCone& cone, const Crease& crease);
 
+// The planes through the lamp and each ray, by their normals, are within a cone, too.
+[[nodiscard]] TileCone plane_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
+
 }  // namespace aphotic

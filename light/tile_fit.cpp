@@ -11,7 +11,13 @@ namespace {
 constexpr int kLast = kTilePoints - 1;
 
 double chebyshev_point(int i) {
-    return -std::cos(std::numbers::pi * i / kLast);
+    static const auto kPoints = [] {
+        std::array<double, kTilePoints> points{};
+        for (int k = 0; k <= kLast; ++k)
+            points[static_cast<std::size_t>(k)] = -std::cos(std::numbers::pi * k / kLast);
+        return points;
+    }();
+    return kPoints[static_cast<std::size_t>(i)];
 }
 
 // l_i at x, by the barycentric formula.
@@ -39,15 +45,12 @@ TileAxis axis_of(int pixels) {
     const double half_px = 0.5 * (pixels - 1);
     for (int i = 0; i < kTilePoints; ++i)
         axis.points_px[static_cast<std::size_t>(i)] = half_px * (1.0 + chebyshev_point(i));
-    // In the middle of the first gap, of the last, and of one beside the middle.
-    constexpr std::array<int, kTileChecks> kGaps{0, 3, 5};
-    for (int k = 0; k < kTileChecks; ++k) {
-        const int gap = kGaps[static_cast<std::size_t>(k)];
+    for (int gap = 0; gap < kTileGaps; ++gap) {
         const double x = 0.5 * (chebyshev_point(gap) + chebyshev_point(gap + 1));
-        axis.checks_px[static_cast<std::size_t>(k)] = half_px * (1.0 + x);
+        axis.gaps_px[static_cast<std::size_t>(gap)] = half_px * (1.0 + x);
         const auto shares = lagrange_at(x);
         for (int i = 0; i < kTilePoints; ++i)
-            axis.to_checks(k, i) = shares[static_cast<std::size_t>(i)];
+            axis.to_gaps(gap, i) = shares[static_cast<std::size_t>(i)];
     }
     axis.to_pixels.resize(pixels, kTilePoints);
     for (int pixel = 0; pixel < pixels; ++pixel) {
@@ -58,11 +61,33 @@ TileAxis axis_of(int pixels) {
     return axis;
 }
 
+// a = C f along one way.
+TileNodes to_degrees() {
+    TileNodes C;
+    for (int k = 0; k <= kLast; ++k) {
+        for (int i = 0; i <= kLast; ++i) {
+            const double half = (i % kLast == 0 ? 0.5 : 1.0) * (k % kLast == 0 ? 0.5 : 1.0);
+            C(k, i) = 2.0 / kLast * half * std::cos(std::numbers::pi * k * (kLast - i) / kLast);
+        }
+    }
+    return C;
+}
+
 }  // namespace
+
+double last_degrees(const TileNodes& nodes) {
+    static const TileNodes kToDegrees = to_degrees();
+    const TileNodes a = (kToDegrees * nodes * kToDegrees.transpose()).cwiseAbs();
+    const double last = a.row(kLast).sum() + a.col(kLast).head<kLast>().sum();
+    const double before =
+        a.row(kLast - 1).head<kLast>().sum() + a.col(kLast - 1).head<kLast - 1>().sum();
+    return last + 0.25 * before;
+}
 
 const TileAxis& tile_axis(int pixels) {
     static const std::vector<TileAxis> kAxes = [] {
         std::vector<TileAxis> made;
+        made.reserve(kTilePixels);
         for (int count = 1; count <= kTilePixels; ++count) made.push_back(axis_of(count));
         return made;
     }();

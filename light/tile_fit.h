@@ -6,7 +6,9 @@
 //
 //   f(x, y) = sum_i sum_j l_i(x) l_j(y) f(x_i, y_j)
 //
-// Between these, at kTileChecks places each way, who asks compares it with f itself.
+// Between these, at places of kTileChecks, who asks compares it with f itself. They stand in the
+// middles of gaps between points: in the four corners, and in every gap of either way twice, so
+// that no line along an axis slips past them.
 //
 // L. N. Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 2 and 5.
 #pragma once
@@ -18,18 +20,35 @@
 namespace aphotic {
 
 inline constexpr int kTilePoints = 7;
-inline constexpr int kTileChecks = 3;
-inline constexpr int kTilePixels = 64;  // along a side, at most
+inline constexpr int kTileGaps = kTilePoints - 1;
+inline constexpr std::array<std::array<int, 2>, 2 * kTileGaps> kTileChecks{{{0, 0},
+                                                                            {5, 5},
+                                                                            {0, 5},
+                                                                            {5, 0},
+                                                                            {1, 3},
+                                                                            {2, 1},
+                                                                            {3, 4},
+                                                                            {4, 2},
+                                                                            {1, 2},
+                                                                            {2, 4},
+                                                                            {3, 1},
+                                                                            {4, 3}}};
+inline constexpr int kTilePixels = 256;  // along a side, at most
 
 using TileNodes = Eigen::Matrix<double, kTilePoints, kTilePoints>;  // (row, column)
 
 // One way across a tile of so many pixels. Places are pixels from the first one's centre.
 struct TileAxis {
     std::array<double, kTilePoints> points_px{};
-    std::array<double, kTileChecks> checks_px{};
+    std::array<double, kTileGaps> gaps_px{};  // their middles
     Eigen::Matrix<float, Eigen::Dynamic, kTilePoints, Eigen::ColMajor, kTilePixels> to_pixels;
-    Eigen::Matrix<double, kTileChecks, kTilePoints> to_checks;
+    Eigen::Matrix<double, kTileGaps, kTilePoints> to_gaps;
 };
 [[nodiscard]] const TileAxis& tile_axis(int pixels);  // 1 to kTilePixels
+
+// Of f = sum_i sum_j a_ij T_i(x) T_j(y), in Chebyshev's polynomials, what the last degree and a
+// quarter of the last but one come to, either way. Of a smooth f it is what the polynomial is off
+// by, or more; a step or a kink between any two places shows in it, wherever it is.
+[[nodiscard]] double last_degrees(const TileNodes& nodes);
 
 }  // namespace aphotic

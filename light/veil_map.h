@@ -13,27 +13,26 @@
 // to the camera to the longest that the floor's direct light takes, or where less than
 // e^-kVeilDepth is left.
 //
-// The veil is smooth over the image but where the sight touches a beam's edge in the water or meets
-// it on the floor. So it is computed on a grid of nodes at most kVeilCell_px apart, and in between
-// it is the cubic through the four next of each way. Where the nodes' third differences are over
-// kVeilBend of the signal, floor's light and veil, the veil itself is computed at five places of
-// the cell: if the cubic is off at one by more than kVeilOff of the signal, the cell gets a grid of
-// its own, four times as fine, and its parts the same test; those that fail are computed pixel by
-// pixel. All that by the parts of light/veil.h, for edges of one are none of the others'. It
-// depends on the cell alone: neither threads nor the rows that are asked for change a bit.
+// Over an image the veil is painted by tiles (tile_image.h) of kVeilTile_px, each part of a beam
+// (light/veil.h) by itself, for edges of one are none of the others'. It is smooth but where the
+// sight touches a beam's edge in the water or meets it on the floor. A polynomial is right that at
+// each place between is off by a tenth of the tolerance of the signal, floor's light and veil, if
+// its last degrees are small, too (tile_fit.h). So that no light slips through between a tile's
+// places, neither the planes of lamp and sights nor the lamp's ways to their ends turn by more over
+// it than twice the width of the narrowest (beam_width.h); near the lamp planes turn about it.
 //
 // Behind a port the veil is that of a few rays, interpolated over the water's index
 // (light/index_nodes.h).
 #pragma once
 
+#include "light/floor_light.h"
 #include "light/path_range.h"
 #include "light/path_table.h"
+#include "light/tile_image.h"
 #include "light/veil.h"
-#include "rig/geometry.h"
 #include "rig/rig.h"
 #include "spectral/bands.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -41,111 +40,60 @@
 
 namespace aphotic {
 
-inline constexpr double kVeilCell_px = 16.0;
-// At least, along the longer side, down to a pixel each.
-inline constexpr double kVeilCells = 85.0;
-inline constexpr int kVeilParts = 4;  // of a cell, each way
-inline constexpr double kVeilOff = 4e-5;
-inline constexpr double kVeilBend = 8e-5;
-// What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
+// Smaller ones in images that have fewer than four along their longer side, down to the least: each
+// tile is one thread's.
+inline constexpr int kVeilTile_px = 256;
+inline constexpr int kLeastVeilTile_px = 32;
+// What maps and renders are off by at most, of the signal.
 inline constexpr double kVeilOfSignal = 1e-4;
-inline constexpr std::size_t kVeilPlanes = 12;  // of one map, at most
+inline constexpr std::size_t kVeilPlanes = kTilePlanes;  // of one map, at most
+
+using VeilGrid = std::vector<WeightedWavelength>;
 
 class VeilMap {
   public:
     // Of water that scatters. direct: the floor's light's. error: relative, of the spectral
-    // integral and its table. points: of a panel (light/veil.h).
+    // integral and its table. points: of a panel (light/veil.h). The planes are R, G and B, and
+    // beside them A of light/veil.h at wavelengths, which share their nodes: none behind a port,
+    // where each has a ray of its own. Without signals, A alone, along rays of one wavelength.
     VeilMap(const Rig& rig,
             const PathRange& direct,
             double error,
-            unsigned points = kVeilMapPoints);
-
-    // Of R, G and B, and beside them A of light/veil.h at wavelengths, a plane each, which share
-    // their nodes: none behind a port, where each has a ray of its own.
-    VeilMap(const Rig& rig,
-            const PathRange& direct,
-            double error,
-            unsigned points,
-            std::span<const double> lambda_nm);
-
-    // A alone, at wavelengths that all have the ray of index_nm.
-    VeilMap(const Rig& rig,
-            const PathRange& direct,
-            double error,
-            unsigned points,
-            std::span<const double> lambda_nm,
-            double index_nm);
+            unsigned points = kVeilMapPoints,
+            std::span<const double> lambda_nm = {},
+            bool has_signals = true);
 
     [[nodiscard]] std::size_t planes() const { return planes_; }
 
-    // Rows whose floor must be known for these, which they are among.
-    struct Rows {
-        int first = 0;
-        int count = 0;
-    };
-    [[nodiscard]] Rows rows_for(Rows wanted) const;
+    // By plane, along the rays of a place of the image, as far as the floor or as they are told.
+    using Signal = PlaceSignals;
+    [[nodiscard]] Signal at(const PlaceRays& rays,
+                            VeilNodes& nodes,
+                            std::optional<double> length_m = {}) const;
 
-    // The planes of rows that rows_for() gave, beside the floor's signal, which has as many; none:
-    // as exact as the veil alone asks.
-    void rows_into(const Sled& sled,
-                   Rows rows,
-                   const std::vector<float>& floor,
-                   int threads,
-                   std::vector<float>& samples) const;
-
-    // At a place of the image, without interpolation; pixels' centres are at .5. By plane.
-    using Signal = std::array<double, kVeilPlanes>;
-    [[nodiscard]] Signal at(const Rig& flown, double column, double row, VeilNodes& nodes) const;
-    // Where the pixel sees so far, not to the floor.
-    [[nodiscard]] Signal at(
-        const Rig& flown, double column, double row, double length_m, VeilNodes& nodes) const;
+    // The planes of some rows as a camera of these rays has them. tolerance: of the sum with the
+    // floor's light, of the veil alone where there is none.
+    void paint(const Sled& sled,
+               const CameraRays& rays,
+               const FloorLight* floor,
+               double tolerance,
+               int threads,
+               const ImageRows& rows) const;
 
   private:
-    // Nodes along one way, from the first pixel's centre to the last's.
-    struct Axis {
-        Axis(int count, double cell_px);
-        [[nodiscard]] double node_px(double node) const { return 0.5 + node * apart_px; }
-        [[nodiscard]] int first_pixel(int cell) const;  // of all that are in no cell before
-        int pixels;
-        int cells;
-        double apart_px;
-    };
-    class Strip;
+    friend class VeilTiles;
 
-    // Where a rig flies.
-    struct Flight {
-        explicit Flight(const Rig& flown) : rig(flown), floor(floor_plane(flown.sled)) {}
-        const Rig& rig;
-        Plane floor;
-    };
-    using Grid = std::vector<WeightedWavelength>;
-
-    VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
-    void add_grids_of(std::span<const double> lambda_nm);
     void tabulate(const PathRange& paths, double error);
-    // Where pixels' centres are nodes, nothing is interpolated, and beams are taken whole.
-    [[nodiscard]] bool has_node_at_each_pixel() const {
-        return across_.apart_px <= 1.0 && down_.apart_px <= 1.0;
-    }
-    [[nodiscard]] Signal at_sights(const Flight& flight,
-                                   double column,
-                                   double row,
-                                   std::optional<double> length_m,
-                                   VeilNodes& nodes) const;
-    // Of a part of a strobe's beam.
-    [[nodiscard]] Signal at_part(
-        const Flight& flight, std::size_t part, double column, double row, VeilNodes& nodes) const;
-    void add(const VeilNodes& nodes, std::size_t strobe, std::size_t index_node, Signal& sum) const;
+    void add(const VeilNodes& nodes, std::size_t strobe, std::size_t ray, Signal& sum) const;
 
     Rig rig_;
     Veil veil_;
-    Axis across_;
-    Axis down_;
-    std::vector<double> index_nodes_nm_;  // whose rays are taken
+    std::vector<double> widest_rad_;      // by part: that a tile may turn
+    std::vector<double> index_nodes_nm_;  // whose rays are taken, in the order of PlaceRays
     std::size_t planes_ = 0;
-    std::vector<Grid> grids_;  // each of three planes
+    std::vector<VeilGrid> grids_;  // each of three planes
     PathSteps steps_;
-    // By index node, lamp spectrum and scatterer; by step, grid, and as path_table() has it.
+    // By index node, lamp spectrum, scatterer and grid.
     std::vector<std::vector<float>> tables_;
     std::vector<std::size_t> lamp_of_strobe_;
 };

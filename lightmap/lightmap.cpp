@@ -30,14 +30,6 @@
 namespace aphotic {
 namespace {
 
-using Eigen::ArrayXd;
-
-// Shares of the error that is asked for: the rest is dispersion's.
-constexpr double kGridShare = 0.1;
-constexpr double kTableShare = 0.5;
-// What has a ray for each wavelength changes faster over them than light that keeps its path.
-constexpr double kDispersedShare = 1e-4;
-
 void require_bare_floor(const Rig& rig) {
     constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
     if (!rig.objects.empty()) {
@@ -83,25 +75,6 @@ void require_float_scale(const Rig& rig) {
                 kMost));
         }
     }
-}
-
-Lightmap rows_of(const Lightmap& map, int first_row, int count) {
-    const auto some = [&](const std::vector<float>& all) {
-        const auto width = static_cast<std::size_t>(map.width_px);
-        const auto height = static_cast<std::size_t>(map.height_px);
-        const std::size_t size = width * static_cast<std::size_t>(count);
-        std::vector<float> samples(kChannels * size);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const float* const from =
-                &all[(c * height + static_cast<std::size_t>(first_row)) * width];
-            std::copy_n(from, size, &samples[c * size]);
-        }
-        return samples;
-    };
-    return {.width_px = map.width_px,
-            .height_px = count,
-            .samples = some(map.samples),
-            .veil = some(map.veil)};
 }
 
 // Light that has gone from the shortest path to the longest, and as wide, is all but gone.
@@ -154,7 +127,8 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kOverTheIndex = 1e-4;
     const bool has_port = rig.camera.port.has_value();
     const bool has_veil = rig.water.scatters() && options.has_veil;
-    const double off_the_veil = has_veil ? kVeilOfSignal + veil_error(rig, kVeilMapPoints) : 0.0;
+    const double off_the_veil =
+        has_veil ? options.veil_tolerance + veil_error(rig, kVeilMapPoints) : 0.0;
     const double off_the_lens = rig.camera.vignetting ? kVignettingRounding : 0.0;
     return {.error = options.error + kRounding + off_the_lens + kTileError +
                      (has_port ? kOverTheIndex : 0.0) + off_the_veil,
@@ -228,31 +202,21 @@ void LightmapMaker::take_off_vignetting(int first_row, int count, std::vector<fl
 }
 
 void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const {
-    if (veil_) {
-        const VeilMap::Rows rows = veil_->rows_for({.first = first_row, .count = count});
-        if (rows.first != first_row || rows.count != count) {
-            Lightmap more;
-            rows_into(sled, rows.first, rows.count, more);
-            map = rows_of(more, first_row - rows.first, count);
-            return;
-        }
-    }
     map.width_px = rig_.camera.width_px;
     map.height_px = count;
     map.samples.resize(kChannels * size_of(map.width_px) * size_of(count));
-    map.veil.clear();
+    map.veil.resize(veil_ ? map.samples.size() : 0);
+    ImageRows rows{.width_px = map.width_px,
+                   .height_px = rig_.camera.height_px,
+                   .first = first_row,
+                   .count = count,
+                   .samples = map.samples.data()};
     const FloorLight light(rig_, sled, table_, rays_);
-    const Outside outside = paint_floor(light,
-                                        rig_.camera.height_px,
-                                        options_.threads,
-                                        {.width_px = map.width_px,
-                                         .first = first_row,
-                                         .count = count,
-                                         .samples = map.samples.data()});
+    const Outside outside = paint_floor(light, options_.threads, rows);
     require_served(sled, outside.is_before, outside.is_beyond);
     if (veil_) {
-        veil_->rows_into(
-            sled, {.first = first_row, .count = count}, map.samples, options_.threads, map.veil);
+        rows.samples = map.veil.data();
+        veil_->paint(sled, rays_, &light, options_.veil_tolerance, options_.threads, rows);
     }
     take_off_vignetting(first_row, count, map.samples);
     take_off_vignetting(first_row, count, map.veil);

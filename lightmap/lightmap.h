@@ -35,6 +35,8 @@ struct LightmapOptions {
     double error = 1e-5;
     int threads = 1;       // changes no bit
     bool has_veil = true;  // where the water scatters
+    // What a veil may be off by, of the signal: as measured, and the rule along the ray adds to it.
+    double veil_tolerance = kVeilOfSignal;
 };
 
 // How far a signal of a map may be from the exact one of the same lamps, relative, off the beams'
@@ -51,7 +53,7 @@ struct MapPromise {
 
 // The error that is asked for, that of tiles and the rounding of floats, that of a sum of a dozen;
 // behind a port besides 1e-4. Of the sum of both in water that
-// scatters: kVeilOfSignal and veil_error() (light/veil.h) on top, measured and no bound.
+// scatters: the veil's tolerance and veil_error() (light/veil.h) on top, measured and no bound.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 
 // R, G, B planar: all rows of R, then of G, then of B.

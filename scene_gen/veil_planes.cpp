@@ -20,7 +20,7 @@ namespace {
 // Of the spectral integral, its table and the rule along the ray: a tenth of what the interpolation
 // is off by.
 constexpr double kTableError = 0.1 * kVeilOfSignal;
-constexpr int kBlockRows = 512;
+constexpr int kBlockRows = 2 * kVeilTile_px;
 // Deflate takes longer than all the rest, for a third of the size.
 constexpr int kNotCompressed = 0;
 
@@ -29,9 +29,18 @@ unsigned points_of(const Rig& rig) {
     return veil_error(rig, kVeilMapPoints) <= kTableError ? kVeilMapPoints : kVeilPoints;
 }
 
+// Planes that have the same rays.
+struct Planes {
+    VeilMap veil;
+    CameraRays rays;
+};
+
 // Of R, G, B and then the wavelengths, in the manifest's order: as many as one may hold, but behind
 // a port each wavelength by itself, for it has its own ray.
-std::vector<VeilMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
+std::vector<Planes> planes_of(const Rig& rig,
+                              const Manifest& manifest,
+                              bool may_see_far,
+                              int threads) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
     const unsigned points = points_of(rig);
@@ -43,38 +52,60 @@ std::vector<VeilMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_
         rest = rest.subspan(first.size());
         return first;
     };
-    std::vector<VeilMap> maps;
+    std::vector<Planes> planes;
     const std::size_t beside_signals = rig.camera.port ? 0 : kVeilPlanes - kChannels;
-    maps.emplace_back(rig, paths, kTableError, points, take(beside_signals));
+    planes.push_back({.veil = VeilMap(rig, paths, kTableError, points, take(beside_signals)),
+                      .rays = CameraRays(rig, threads)});
     while (!rest.empty()) {
-        const double index_nm = rest.front();
+        const double nm = rest.front();
         const auto next = take(rig.camera.port ? 1 : kVeilPlanes);
-        maps.emplace_back(rig, paths, kTableError, points, next, index_nm);
+        planes.push_back({.veil = VeilMap(rig, paths, kTableError, points, next, false),
+                          .rays = CameraRays(rig, nm, threads)});
     }
-    return maps;
+    return planes;
 }
 
-// Over the bare floor, interpolated. The room is for the planes of one map.
-void block_of_cells(const std::vector<VeilMap>& maps,
-                    const Rig& rig,
-                    VeilMap::Rows rows,
-                    int threads,
-                    std::vector<float>& room,
-                    std::vector<float>& block) {
-    block.clear();
-    for (const VeilMap& map : maps) {
-        map.rows_into(rig.sled, rows, {}, threads, room);
-        if (maps.size() == 1)
-            block.swap(room);
-        else
-            block.insert(block.end(), room.begin(), room.end());
+std::size_t count_of(const std::vector<Planes>& planes) {
+    std::size_t count = 0;
+    for (const Planes& some : planes) count += some.veil.planes();
+    return count;
+}
+
+// Some rows of an image.
+struct Rows {
+    int first = 0;
+    int count = 0;
+};
+
+// Over the bare floor, by tiles.
+void paint_block(const std::vector<Planes>& planes,
+                 const Rig& rig,
+                 Rows rows,
+                 int threads,
+                 std::vector<float>& block) {
+    const std::size_t plane =
+        static_cast<std::size_t>(rig.camera.width_px) * static_cast<std::size_t>(rows.count);
+    block.resize(count_of(planes) * plane);
+    float* samples = block.data();
+    for (const Planes& some : planes) {
+        some.veil.paint(rig.sled,
+                        some.rays,
+                        nullptr,
+                        kVeilOfSignal,
+                        threads,
+                        {.width_px = rig.camera.width_px,
+                         .height_px = rig.camera.height_px,
+                         .first = rows.first,
+                         .count = rows.count,
+                         .samples = samples});
+        samples += some.veil.planes() * plane;
     }
 }
 
 // How far each pixel sees, from the frame of fog; infinite where that is all there is.
 std::vector<double> distances(const std::filesystem::path& folder,
                               const Manifest& manifest,
-                              VeilMap::Rows rows) {
+                              Rows rows) {
     static const std::vector<std::string> kFog{"R"};
     ExrReader reader(image_path(folder, manifest.frames.back()));
     std::vector<float> fog(static_cast<std::size_t>(manifest.width_px) *
@@ -89,17 +120,16 @@ std::vector<double> distances(const std::filesystem::path& folder,
 
 // Over anything, pixel by pixel. Where the floor is in view, it is the floor: nearer to it than the
 // fog's half floats tell.
-std::vector<float> block_of_pixels(const std::vector<VeilMap>& maps,
+std::vector<float> block_of_pixels(const std::vector<Planes>& planes,
                                    const Rig& rig,
-                                   VeilMap::Rows rows,
+                                   Rows rows,
                                    const std::vector<double>& distance_m,
                                    int threads) {
     constexpr double kHalfFloat = 0x1p-11;
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const std::size_t plane = distance_m.size();
-    std::size_t planes = 0;
-    for (const VeilMap& map : maps) planes += map.planes();
-    std::vector<float> block(planes * plane);
+    std::vector<float> block(count_of(planes) * plane);
+    const Plane floor = floor_plane(rig.sled);
     std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
     const double middle_nm = std::midpoint(rig.camera.range.first_nm, rig.camera.range.last_nm);
     parallel_for(static_cast<std::size_t>(rows.count),
@@ -113,13 +143,14 @@ std::vector<float> block_of_pixels(const std::vector<VeilMap>& maps,
                          const bool is_floor =
                              std::abs(distance_m[at] - floor_m) <= kHalfFloat * floor_m;
                          std::size_t first = 0;
-                         for (const VeilMap& map : maps) {
-                             const VeilMap::Signal veil =
-                                 is_floor ? map.at(rig, x, y, rooms[thread])
-                                          : map.at(rig, x, y, distance_m[at], rooms[thread]);
-                             for (std::size_t c = 0; c < map.planes(); ++c)
-                                 block[(first + c) * plane + at] = static_cast<float>(veil[c]);
-                             first += map.planes();
+                         for (const auto& [veil, rays] : planes) {
+                             const VeilMap::Signal found =
+                                 veil.at(rays.at(x, y, floor, false),
+                                         rooms[thread],
+                                         is_floor ? std::nullopt : std::optional(distance_m[at]));
+                             for (std::size_t c = 0; c < veil.planes(); ++c)
+                                 block[(first + c) * plane + at] = static_cast<float>(found[c]);
+                             first += veil.planes();
                          }
                      }
                  });
@@ -156,24 +187,21 @@ std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
     ManifestVeil veil = manifest.veil.value_or(ManifestVeil{});
     const std::filesystem::path file = veil_path(folder);
     make_folder(file.parent_path());
-    const std::vector<VeilMap> maps = maps_of(rig, manifest, veil.fog_m > 0.0);
+    const std::vector<Planes> planes = planes_of(rig, manifest, veil.fog_m > 0.0, threads);
     ExrWriter writer(file,
                      manifest.width_px,
                      manifest.height_px,
                      veil_channels(manifest),
                      {{"aphotic:rig_sha256", manifest.rig_sha256}},
                      kNotCompressed);
-    std::vector<float> room;
     std::vector<float> block;
-    for (int row = 0; row < manifest.height_px;) {
-        const VeilMap::Rows rows = maps.front().rows_for(
-            {.first = row, .count = std::min(kBlockRows, manifest.height_px - row)});
+    for (int row = 0; row < manifest.height_px; row += kBlockRows) {
+        const Rows rows{.first = row, .count = std::min(kBlockRows, manifest.height_px - row)};
         if (veil.fog_m > 0.0)
-            block = block_of_pixels(maps, rig, rows, distances(folder, manifest, rows), threads);
+            block = block_of_pixels(planes, rig, rows, distances(folder, manifest, rows), threads);
         else
-            block_of_cells(maps, rig, rows, threads, room, block);
+            paint_block(planes, rig, rows, threads, block);
         writer.write_rows(rows.count, block);
-        row = rows.first + rows.count;
     }
     writer.finish();
     veil.sha256 = sha256_of_file(file);

@@ -131,7 +131,8 @@ struct GivenBack {
 LightAt light_of_rig(const Rig& rig,
                      const Navigation& navigation,
                      const std::vector<ImageFile>& files,
-                     bool has_veil) {
+                     bool has_veil,
+                     double veil_tolerance) {
     std::vector<Sled> sleds;
     for (const ImageFile& file : files) {
         try {
@@ -140,7 +141,8 @@ LightAt light_of_rig(const Rig& rig,
             // It is said of the image when its turn comes.
         }
     }
-    const LightmapOptions options{.has_veil = has_veil};
+    const LightmapOptions options{.has_veil = has_veil, .veil_tolerance = veil_tolerance};
+    const bool scatters = rig.water.scatters();
     const auto light = std::make_shared<const RigLight>(
         RigLight{.edges = ConeEdges(rig),
                  .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), options)});
@@ -151,7 +153,8 @@ LightAt light_of_rig(const Rig& rig,
             .rig_altitude_m = rig.sled.altitude_m,
             .size = {rig.camera.width_px, rig.camera.height_px},
             .is_grey = rig.camera.sensor.is_mono(),
-            .has_veil = rig.water.scatters() ? std::optional(has_veil) : std::nullopt,
+            .has_veil = scatters ? std::optional(has_veil) : std::nullopt,
+            .veil_tolerance = scatters && has_veil ? std::optional(veil_tolerance) : std::nullopt,
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },

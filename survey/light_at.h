@@ -32,6 +32,7 @@ struct LightAt {
     bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera
     // Whether the maps have the veil; none: the water does not scatter, as far as is known.
     std::optional<bool> has_veil{};
+    std::optional<double> veil_tolerance{};  // where they have one of the rig's
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
@@ -44,11 +45,16 @@ struct LightAt {
     std::optional<PerChannel> floor_colour_in_water{};  // by the light that images were taken in
 };
 
+// What a correction's veil is off by at most, of the signal: under what images' noise and the model
+// are.
+inline constexpr double kVeilOfCorrection = 1e-3;
+
 // For the poses of these images: those that have none are passed over here.
 [[nodiscard]] LightAt light_of_rig(const Rig& rig,
                                    const Navigation& navigation,
                                    const std::vector<ImageFile>& files,
-                                   bool has_veil = true);
+                                   bool has_veil = true,
+                                   double veil_tolerance = kVeilOfCorrection);
 
 // An InputError unless its maps are for such an image: of its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);

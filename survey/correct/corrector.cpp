@@ -273,6 +273,7 @@ class ModelCorrector : public Corrector {
         if (const auto& own = light.rig_size)
             json["rig_scale"] = static_cast<double>(light.size.width_px) / own->width_px;
         if (light.has_veil) json["veil"] = *light.has_veil;
+        if (light.veil_tolerance) json["tolerance"] = *light.veil_tolerance;
         return json;
     }
 

@@ -190,7 +190,8 @@ double electrons_for_share(Rig rig,
 
 void make_truth_by_lightmaps(const SimulatedSurvey& survey) {
     if (survey.texture > 0.0) make_folder(survey.folder / "texture");
-    const LightmapMaker maker(survey.rig, paths_of(survey.rig, survey.corners), {});
+    const LightmapMaker maker(
+        survey.rig, paths_of(survey.rig, survey.corners), {.veil_tolerance = survey.tolerance});
     for_missing(survey, "truth", [&](const Leg& leg) { make_truth(survey, maker, leg); });
 }
 

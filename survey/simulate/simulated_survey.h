@@ -42,7 +42,8 @@ struct SimulatedSurvey {
     InstrumentErrors errors{};
     RawCamera camera{};
     bool has_noise = true;
-    double texture = 0.2;  // rms contrast; 0: none
+    double texture = 0.2;     // rms contrast; 0: none
+    double tolerance = 1e-3;  // of the veil that lightmaps have, as a share of the signal
     std::uint64_t seed = 1;
     int jobs = 1;
     nlohmann::ordered_json made_by{};  // what else the images depend on

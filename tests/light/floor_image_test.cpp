@@ -23,11 +23,13 @@ constexpr double kRounding = 6.0 * 0x1p-24;
 std::vector<float> painted(const FloorLight& light, const Camera& camera, int first, int count) {
     std::vector<float> samples(kChannels * static_cast<std::size_t>(camera.width_px) *
                                static_cast<std::size_t>(count));
-    const Outside outside = paint_floor(
-        light,
-        camera.height_px,
-        2,
-        {.width_px = camera.width_px, .first = first, .count = count, .samples = samples.data()});
+    const Outside outside = paint_floor(light,
+                                        2,
+                                        {.width_px = camera.width_px,
+                                         .height_px = camera.height_px,
+                                         .first = first,
+                                         .count = count,
+                                         .samples = samples.data()});
     EXPECT_FALSE(outside.is_before || outside.is_beyond);
     return samples;
 }

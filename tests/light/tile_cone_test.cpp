@@ -11,6 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace aphotic::tile_cone_test {
@@ -71,6 +75,40 @@ TEST(TileCone, OverlooksNoCrease) {
     }
     EXPECT_GT(crossed, 100);
     EXPECT_GT(spared, 2 * crossed);
+}
+
+TEST(TileCone, HoldsThePlanesOfAllItsRays) {
+    double widest_rad = 0.0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        Rig rig = random_rig(seed);
+        rig.camera.port.reset();
+        rig.camera.width_px = 80;
+        rig.camera.height_px = 64;
+        rig.camera.pixel_pitch_m = rig.camera.focal_length_m / 70.0;
+        const Plane floor = floor_plane(rig.sled);
+        const Eigen::Vector3d lamp_m = rig.strobes.front().position_m;
+        const auto ray_at = [&](double column, double row) {
+            return floor_ray(pixel_ray(rig, column + 0.5, row + 0.5, kGreen_nm), floor);
+        };
+        for (int row = 0; row < 64; row += kTile_px) {
+            for (int column = 0; column < 80; column += kTile_px) {
+                std::vector<FloorRay> rays;
+                for (const auto& [x, y] : tile_places(kTile_px, kTile_px))
+                    rays.push_back(ray_at(column + x, row + y));
+                const TileCone cone = plane_cone(lamp_m, rays);
+                for (int k = 0; k < kTile_px * kTile_px; ++k) {
+                    const FloorRay ray = ray_at(column + k % kTile_px, row + k / kTile_px);
+                    const Eigen::Vector3d normal =
+                        (ray.origin_m - lamp_m).cross(ray.direction).normalized();
+                    const double turn_rad =
+                        std::atan2(normal.cross(cone.middle).norm(), normal.dot(cone.middle));
+                    ASSERT_LE(turn_rad, cone.radius_rad) << "seed " << seed;
+                    widest_rad = std::max(widest_rad, turn_rad);
+                }
+            }
+        }
+    }
+    EXPECT_GT(widest_rad, 0.1);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 namespace aphotic::tile_fit_test {
 namespace {
@@ -28,10 +31,10 @@ TEST(TileFit, IsExactForPolynomialsOfItsDegree) {
         ASSERT_EQ(at_pixels.size(), pixels);
         for (int pixel = 0; pixel < pixels; ++pixel)
             EXPECT_NEAR(at_pixels(pixel), polynomial(pixel, pixels), kFloats) << pixels;
-        const auto at_checks = (axis.to_checks * values).eval();
-        for (int k = 0; k < kTileChecks; ++k) {
-            const double x = axis.checks_px[static_cast<std::size_t>(k)];
-            EXPECT_NEAR(at_checks(k), polynomial(x, pixels), kDoubles) << pixels;
+        const auto in_gaps = (axis.to_gaps * values).eval();
+        for (int k = 0; k < kTileGaps; ++k) {
+            const double x = axis.gaps_px[static_cast<std::size_t>(k)];
+            EXPECT_NEAR(in_gaps(k), polynomial(x, pixels), kDoubles) << pixels;
         }
     }
 }
@@ -41,6 +44,56 @@ TEST(TileFit, ReachesFromTheFirstPixelToTheLast) {
         EXPECT_EQ(tile_axis(pixels).points_px.front(), 0.0);
         EXPECT_NEAR(tile_axis(pixels).points_px.back(), pixels - 1, pixels * 0x1p-52);
     }
+}
+
+TileNodes nodes_of(const std::function<double(double x, double y)>& f) {
+    const TileAxis& axis = tile_axis(kTilePixels);
+    TileNodes nodes;
+    for (int j = 0; j < kTilePoints; ++j) {
+        for (int i = 0; i < kTilePoints; ++i) {
+            const auto place = [&](int k) {
+                return 2.0 * axis.points_px[static_cast<std::size_t>(k)] / (kTilePixels - 1) - 1.0;
+            };
+            nodes(j, i) = f(place(i), place(j));
+        }
+    }
+    return nodes;
+}
+
+// T_n(cos t) = cos(n t).
+TEST(TileFit, TellsTheLastDegreesByTheirShares) {
+    const auto T = [](int n, double x) {
+        return std::cos(n * std::acos(std::clamp(x, -1.0, 1.0)));
+    };
+    constexpr double kNear = 1e-13;
+    for (int n = 0; n <= 6; ++n) {
+        const double expected = n == 6 ? 1.0 : n == 5 ? 0.25 : 0.0;
+        EXPECT_NEAR(
+            last_degrees(nodes_of([&](double x, double) { return T(n, x); })), expected, kNear);
+        EXPECT_NEAR(last_degrees(nodes_of([&](double x, double y) { return T(n, y) * T(2, x); })),
+                    expected,
+                    kNear);
+    }
+}
+
+// A step across the tile anywhere shows, of which a polynomial is off by about a half.
+TEST(TileFit, TellsAStepWhereverItIs) {
+    for (double at = -0.95; at < 0.96; at += 0.01) {
+        const double seen =
+            last_degrees(nodes_of([&](double x, double) { return x > at ? 1.0 : 0.0; }));
+        EXPECT_GT(seen, 0.04) << at;
+    }
+}
+
+TEST(TileFit, ChecksEveryGapOfEitherWayTwice) {
+    std::array<int, kTileGaps> across{};
+    std::array<int, kTileGaps> down{};
+    for (const auto& [i, j] : kTileChecks) {
+        ++across.at(static_cast<std::size_t>(i));
+        ++down.at(static_cast<std::size_t>(j));
+    }
+    for (const int times : across) EXPECT_EQ(times, 2);
+    for (const int times : down) EXPECT_EQ(times, 2);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "support/dice.h"
+#include "support/random_beam.h"
+#include "support/random_camera.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -127,34 +129,106 @@ TEST(VeilMap, IsTheVeilOfEachPixelAboutALampOnTheAxis) {
     }
 }
 
-// Every pixel of one, edges of cones in the water and on the floor included.
-TEST(VeilMap, IsInterpolatedWhereThatIsRight) {
-    const Rig rig = coast(1360, 1024);
-    const LightmapMaker maker(rig, std::nullopt, options());
-    const Lightmap map = maker.map(rig.sled);
+// The largest departure from the same rule at the pixel, of the signal, over every so many pixels.
+double off_by(const Rig& rig, const LightmapOptions& options, int step) {
+    const Lightmap map = LightmapMaker(rig, std::nullopt, options).map(rig.sled);
     const VeilMap exact(rig, path_range(rig), 1e-5);
+    const CameraRays rays(rig, 1);
+    const Plane floor = floor_plane(rig.sled);
     const std::size_t plane = map.veil.size() / kChannels;
     VeilNodes nodes;
     double worst = 0.0;
-    int over = 0;
-    int all = 0;
-    for (int row = 3; row < 1024; row += 7) {
-        for (int column = 3; column < 1360; column += 7) {
-            const auto expected = exact.at(rig, column + 0.5, row + 0.5, nodes);
-            const auto at = static_cast<std::size_t>(row * 1360 + column);
-            double off = 0.0;
-            for (std::size_t c = 0; c < kChannels; ++c)
-                off =
-                    std::max(off,
-                             std::abs(static_cast<double>(map.veil[c * plane + at]) - expected[c]) /
-                                 (static_cast<double>(map.samples[c * plane + at]) + expected[c]));
-            worst = std::max(worst, off);
-            over += off > kOfSignal ? 1 : 0;
-            ++all;
+    for (int row = step / 2; row < map.height_px; row += step) {
+        for (int column = step / 2; column < map.width_px; column += step) {
+            const auto expected = exact.at(rays.at(column + 0.5, row + 0.5, floor, false), nodes);
+            const auto at = static_cast<std::size_t>(row * map.width_px + column);
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                const double off =
+                    std::abs(static_cast<double>(map.veil[c * plane + at]) - expected[c]);
+                const double signal =
+                    static_cast<double>(map.samples[c * plane + at]) + expected[c];
+                worst = std::max(worst, signal > 0.0 ? off / signal : off);
+            }
         }
     }
+    return worst;
+}
+
+// Edges of cones in the water and on the floor included.
+TEST(VeilMap, IsInterpolatedWhereThatIsRight) {
+    const double worst = off_by(coast(1360, 1024), options(), 7);
     RecordProperty("interpolation", std::to_string(worst));
-    EXPECT_LT(worst, kOfSignal) << over << " of " << all;
+    EXPECT_LT(worst, kOfSignal);
+}
+
+// Whatever is asked for.
+TEST(VeilMap, IsAsRightAsItsTolerance) {
+    const Rig rig = coast(1360, 1024);
+    for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
+        LightmapOptions asked = options();
+        asked.veil_tolerance = tolerance;
+        const double worst = off_by(rig, asked, 13);
+        RecordProperty("at " + std::to_string(tolerance), std::to_string(worst));
+        EXPECT_LT(worst, tolerance);
+    }
+}
+
+// Of a part alone, for the rule along a ray has other points for a beam of several.
+TEST(VeilMap, OfBeamsOfEveryKindIsAsRightAsItsTolerance) {
+    for (const BeamKind kind : kBeamKinds) {
+        for (int i = 0; i < 2; ++i) {
+            Dice dice(7300 + static_cast<std::uint64_t>(i));
+            Rig rig = coast(400, 180);
+            for (Strobe& strobe : rig.strobes)
+                strobe.beam = parts_of(random_beam_of(kind, dice)).front();
+            if (i == 1) give_lens(LensKind::Fisheye, dice, rig.camera);
+            for (const double tolerance : {kVeilOfSignal, 1e-3}) {
+                LightmapOptions asked = options();
+                asked.veil_tolerance = tolerance;
+                EXPECT_LT(off_by(rig, asked, 7), tolerance)
+                    << "kind " << static_cast<int>(kind) << ", rig " << i;
+            }
+        }
+    }
+}
+
+// A streak of light across the view that is narrower than the places of a tile are apart: of a
+// sharp cone, a soft one, and a lobe.
+TEST(VeilMap, OverlooksNoNarrowBeam) {
+    constexpr double kNarrow_rad = 0.8 * std::numbers::pi / 180.0;
+    const std::vector<Cone> beams{{.part = "sharp", .half_angle_rad = kNarrow_rad, .weight = 1.0},
+                                  {.part = "soft",
+                                   .half_angle_rad = 2.0 * kNarrow_rad,
+                                   .weight = 1.0,
+                                   .edge_rad = 2.0 * kNarrow_rad},
+                                  {.part = "lobe",
+                                   .half_angle_rad = 0.5 * std::numbers::pi,
+                                   .weight = 1.0,
+                                   .exponent = 1.0 / (kNarrow_rad * kNarrow_rad)}};
+    for (const Cone& cone : beams) {
+        for (const double across_m : {0.05, 0.23}) {
+            Rig rig = coast(680, 512);
+            rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+            rig.strobes[0].beam.cones = {cone};
+            rig.strobes[0].position_m = {-0.6, across_m, 0.9};
+            rig.strobes[0].axis = Eigen::Vector3d(1.0, 0.0, 0.1).normalized();
+            EXPECT_LT(off_by(rig, options(), 9), kOfSignal) << cone.part << ' ' << across_m;
+        }
+    }
+}
+
+// A lamp in view is a needle of light.
+TEST(VeilMap, OverlooksNoNeedle) {
+    Rig rig = coast(400, 300);
+    rig.sled.pitch_rad = 0.0;
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].beam.cones = {
+        {.part = "even", .half_angle_rad = 0.5 * std::numbers::pi, .weight = 1.0}};
+    rig.strobes[0].axis = {0.0, 0.0, 1.0};
+    for (const double x_m : {1e-3, 0.2}) {
+        rig.strobes[0].position_m = {x_m, 0.05, 1.0};
+        EXPECT_LT(off_by(rig, options(), 3), kOfSignal) << x_m;
+    }
 }
 
 TEST(VeilMap, HoldsAtOtherHeightsAttitudesAndPowers) {

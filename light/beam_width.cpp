@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "light/beam_width.h"
+
+#include "light/steep_crease.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+double least_step(const std::vector<double>& angles_rad) {
+    double least = std::numbers::pi;
+    for (std::size_t i = 1; i < angles_rad.size(); ++i)
+        least = std::min(least, angles_rad[i] - angles_rad[i - 1]);
+    return least;
+}
+
+}  // namespace
+
+double narrowest_rad(const Beam& beam) {
+    double narrowest = std::numbers::pi;
+    for (const Cone& cone : beam.cones) {
+        narrowest =
+            std::min({narrowest, 2.0 * cone.half_angle_rad, 2.0 / std::sqrt(cone.exponent)});
+    }
+    const bool is_steep = !steep_creases(beam, frame_about(Eigen::Vector3d::UnitZ())).empty();
+    if (const auto* table = std::get_if<BeamTable>(&beam.pattern); table != nullptr && is_steep) {
+        narrowest = std::min({narrowest,
+                              2.0 * least_step(table->vertical_rad),
+                              2.0 * least_step(table->horizontal_rad)});
+    }
+    if (const auto* optics = std::get_if<BeamOptics>(&beam.pattern)) {
+        narrowest = std::min(narrowest,
+                             2.0 * std::atan(0.5 * std::min(optics->along_m, optics->across_m) /
+                                             optics->distance_m));
+    }
+    return narrowest;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Light at every pixel of an image, at the price of what is not smooth.
+//
+// The image is cut into square tiles. What of a tile's light may be smooth there is computed at the
+// points of tile_fit.h and interpolated, if at the places between it is right. The rest goes on to
+// the four quarters of the tile; and at kDirectPixels it is computed pixel by pixel. Tiles depend
+// on the image alone: neither threads nor the rows that are asked for change a bit.
+//
+// Whoever has such light (floor_image.cpp, veil_map.cpp) tells it by a class, an object for each
+// thread, with
+//
+//   Piece, Group    of light: what may be smooth in one tile and not in another, and pieces that
+//                   are interpolated together
+//   Place, Found    what all pieces have in common at a place; a group's light there, `signals`
+//   planes()        of the image
+//   split(tile, pieces, rest)       groups that may be smooth in a tile; what is not goes on
+//   all_of(pieces)                  one group
+//   give_back(group, rest)          a group that is not smooth goes on
+//   place(column, row, is_exact)    is_exact: not a point of a polynomial
+//   find(group, place, is_exact)
+//   is_within(found)                whether it may be interpolated
+//   beside(place, signals)          adds to a signal what is none of these pieces
+//   is_right(found, check)          whether a polynomial is, at one place
+//   settle(group, column, row, place, signals, found)   the last word on a pixel
+#pragma once
+
+#include "base/parallel.h"
+#include "light/tile_fit.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kDirectPixels = 8;
+inline constexpr std::size_t kTilePlanes = 12;  // at most
+using PlaceSignals = std::array<double, kTilePlanes>;
+
+struct Tile {
+    int column = 0;
+    int row = 0;
+    int width = 0;
+    int height = 0;
+
+    [[nodiscard]] bool is_direct() const {
+        return width <= kDirectPixels && height <= kDirectPixels;
+    }
+};
+[[nodiscard]] std::array<Tile, 4> quarters(const Tile& tile);
+
+// A polynomial at a place between its points.
+struct TileCheck {
+    PlaceSignals told{};
+    PlaceSignals last_degrees{};  // tile_fit.h
+    PlaceSignals signals{};       // the whole there, as far as it is known
+};
+
+// What most have to say of it.
+struct TileLight {
+    static bool is_within(const auto& /*found*/) { return true; }
+    static void beside(const auto& /*place*/, PlaceSignals& /*signals*/) {}
+    static void settle(const auto&... /*all*/) {}
+};
+
+// Rows of an image of so many, planes one after another.
+struct ImageRows {
+    int width_px = 0;
+    int height_px = 0;
+    int first = 0;
+    int count = 0;
+    float* samples = nullptr;
+};
+
+// The tiles of an image that have some of these rows, row by row.
+[[nodiscard]] std::vector<Tile> tiles_of(const ImageRows& rows, int tile_px);
+
+using TilePlane = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+void copy_rows(const std::vector<TilePlane>& planes, const Tile& tile, const ImageRows& rows);
+
+// A tile of the image's grid, and what its pixels have so far.
+template <class Light>
+class TilePainter {
+  public:
+    using Pieces = std::vector<typename Light::Piece>;
+
+    TilePainter(Light& light, const Tile& whole, const ImageRows& rows)
+        : light_(light),
+          whole_(whole),
+          rows_(rows),
+          planes_(light.planes(), TilePlane::Zero(whole.height, whole.width)) {}
+
+    void paint(const Tile& tile, const Pieces& pieces) {
+        const bool is_asked_for =
+            tile.row < rows_.first + rows_.count && tile.row + tile.height > rows_.first;
+        if (pieces.empty() || tile.width == 0 || tile.height == 0 || !is_asked_for) return;
+        if (tile.is_direct()) {
+            paint_directly(tile, light_.all_of(pieces));
+            return;
+        }
+        Pieces rest;
+        std::vector<Polynomial> found;
+        for (auto& group : light_.split(tile, pieces, rest))
+            found.push_back({.group = std::move(group), .nodes = Nodes(planes_.size())});
+        if (!found.empty()) interpolate(tile, found);
+        for (const Polynomial& one : found)
+            if (!one.is_right) light_.give_back(one.group, rest);
+        for (const Tile& quarter : quarters(tile)) paint(quarter, rest);
+    }
+
+    [[nodiscard]] const std::vector<TilePlane>& planes() const { return planes_; }
+
+  private:
+    using Nodes = std::vector<TileNodes>;
+    struct Polynomial {
+        typename Light::Group group;
+        Nodes nodes;  // by plane
+        bool is_right = true;
+        typename Light::Found found{};
+        PlaceSignals last_degrees{};
+    };
+    using Polynomials = std::vector<Polynomial>;
+
+    static bool none_is_right(const Polynomials& all) {
+        return std::ranges::none_of(all, &Polynomial::is_right);
+    }
+
+    [[nodiscard]] typename Light::Place place_in(const Tile& tile,
+                                                 double x,
+                                                 double y,
+                                                 bool is_exact) const {
+        return light_.place(tile.column + x + 0.5, tile.row + y + 0.5, is_exact);
+    }
+
+    [[nodiscard]] float& sample(std::size_t plane, const Tile& tile, int x, int y) {
+        return planes_[plane](tile.row - whole_.row + y, tile.column - whole_.column + x);
+    }
+
+    void take_nodes(const Tile& tile, Polynomials& all) {
+        const TileAxis& across = tile_axis(tile.width);
+        const TileAxis& down = tile_axis(tile.height);
+        for (int k = 0; k < kTilePoints * kTilePoints && !none_is_right(all); ++k) {
+            const int i = k % kTilePoints;
+            const int j = k / kTilePoints;
+            const auto place = place_in(tile,
+                                        across.points_px[static_cast<std::size_t>(i)],
+                                        down.points_px[static_cast<std::size_t>(j)],
+                                        false);
+            for (Polynomial& one : all) {
+                const auto found = light_.find(one.group, place, false);
+                one.is_right &= light_.is_within(found);
+                for (std::size_t c = 0; c < planes_.size(); ++c)
+                    one.nodes[c](j, i) = found.signals[c];
+            }
+        }
+    }
+
+    void check(const Tile& tile, int i, int j, Polynomials& all) {
+        const TileAxis& across = tile_axis(tile.width);
+        const TileAxis& down = tile_axis(tile.height);
+        const double x = across.gaps_px[static_cast<std::size_t>(i)];
+        const double y = down.gaps_px[static_cast<std::size_t>(j)];
+        const auto place = place_in(tile, x, y, true);
+        PlaceSignals signals{};
+        light_.beside(place, signals);
+        for (Polynomial& one : all) one.found = light_.find(one.group, place, true);
+        for (std::size_t c = 0; c < planes_.size(); ++c) {
+            signals[c] += static_cast<double>(sample(
+                c, tile, static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))));
+            for (const Polynomial& one : all) signals[c] += one.found.signals[c];
+        }
+        for (Polynomial& one : all) {
+            TileCheck check{.told = {}, .last_degrees = one.last_degrees, .signals = signals};
+            for (std::size_t c = 0; c < planes_.size(); ++c) {
+                check.told[c] =
+                    down.to_gaps.row(j) * one.nodes[c] * across.to_gaps.row(i).transpose();
+            }
+            one.is_right = one.is_right && light_.is_right(one.found, check);
+        }
+    }
+
+    void interpolate(const Tile& tile, Polynomials& all) {
+        take_nodes(tile, all);
+        for (Polynomial& one : all) {
+            for (std::size_t c = 0; c < planes_.size(); ++c)
+                one.last_degrees[c] = last_degrees(one.nodes[c]);
+        }
+        for (const auto& [across, down] : kTileChecks)
+            if (!none_is_right(all)) check(tile, across, down, all);
+        if (none_is_right(all)) return;
+        for (std::size_t c = 0; c < planes_.size(); ++c) {
+            TileNodes sum = TileNodes::Zero();
+            for (const Polynomial& one : all)
+                if (one.is_right) sum += one.nodes[c];
+            const Eigen::Matrix<float, kTilePoints, Eigen::Dynamic> rows =
+                sum.cast<float>() * tile_axis(tile.width).to_pixels.transpose();
+            planes_[c]
+                .block(tile.row - whole_.row, tile.column - whole_.column, tile.height, tile.width)
+                .noalias() += tile_axis(tile.height).to_pixels * rows;
+        }
+    }
+
+    void paint_directly(const Tile& tile, const typename Light::Group& all) {
+        const int first = std::max(0, rows_.first - tile.row);
+        const int end = std::min(tile.height, rows_.first + rows_.count - tile.row);
+        for (int y = first; y < end; ++y) {
+            for (int x = 0; x < tile.width; ++x) {
+                const auto place = place_in(tile, x, y, true);
+                auto found = light_.find(all, place, true);
+                PlaceSignals signals{};
+                for (std::size_t c = 0; c < planes_.size(); ++c)
+                    signals[c] = static_cast<double>(sample(c, tile, x, y));
+                light_.settle(
+                    all, tile.column + x + 0.5, tile.row + y + 0.5, place, signals, found);
+                for (std::size_t c = 0; c < planes_.size(); ++c)
+                    sample(c, tile, x, y) = static_cast<float>(signals[c] + found.signals[c]);
+            }
+        }
+    }
+
+    Light& light_;
+    Tile whole_;
+    ImageRows rows_;
+    std::vector<TilePlane> planes_;
+};
+
+// All pieces, by a thread for each of these lights.
+template <class Light>
+void paint_tiles(std::vector<Light>& by_thread,
+                 const std::vector<typename Light::Piece>& pieces,
+                 int tile_px,
+                 const ImageRows& rows) {
+    const std::vector<Tile> tiles = tiles_of(rows, tile_px);
+    parallel_for(tiles.size(), by_thread.size(), [&](std::size_t k, std::size_t thread) {
+        TilePainter<Light> painter(by_thread[thread], tiles[k], rows);
+        painter.paint(tiles[k], pieces);
+        copy_rows(painter.planes(), tiles[k], rows);
+    });
+}
+
+}  // namespace aphotic
