@@ -10,13 +10,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
 namespace {
 
 std::vector<std::string> set_keys;
+
+// What makes images of a rig: others are given images, whose size these have.
+constexpr std::array<std::string_view, 8> kScaled{
+    "render", "plan", "generate", "trace", "validate", "study", "lightmap", "survey"};
 
 std::string setting_fault(const std::string& text) {
     const std::size_t sign = text.find('=');
@@ -33,11 +40,18 @@ void add_set_option(CLI::App& app) {
         if (name.starts_with("RIG") || option->get_type_name() == "RIG") rig = option;
     }
     if (rig == nullptr) return;
-    const auto take = [](const std::vector<std::string>& said) { set_keys = said; };
+    const auto take = [](const std::vector<std::string>& said) {
+        set_keys.insert(set_keys.end(), said.begin(), said.end());
+    };
     add_option_function<std::vector<std::string>>(app, "--set", take)
         ->allow_extra_args(false)
         ->check(CLI::Validator(setting_fault, ""))
         ->needs(rig);
+    if (std::ranges::find(kScaled, app.get_name()) == kScaled.end()) return;
+    const auto scale = [](const double& factor) {
+        set_keys.push_back(fmt::format("camera.scale={}", factor));
+    };
+    add_option_function<double>(app, "--scale", scale)->needs(rig);
 }
 
 std::optional<ManifestSettings> rig_settings() {

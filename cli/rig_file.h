@@ -5,7 +5,8 @@
 // error, before anything is written.
 //
 // --set KEY=VALUE sets keys of its text (rig/file/rig_text.h) before it is read, whatever the
-// command: to all that follows this is the rig, whose digest is of the text with them.
+// command: to all that follows this is the rig, whose digest is of the text with them. --scale 0.1,
+// of the commands that make images of a rig, is --set camera.scale=0.1.
 #pragma once
 
 #include "rig/file/rig_text.h"

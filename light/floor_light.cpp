@@ -113,28 +113,18 @@ FloorLight::FloorLight(const Rig& rig,
     }
 }
 
-FloorLight::Arrival FloorLight::arrive(const FloorLamp& lamp,
-                                       const FloorRay& ray,
-                                       const Vector3d* from) const {
-    Arrival light;
-    if (!ray.sees_floor()) return light;
-    light.towards = towards(lamp.position_m, ray);
+FloorArrival FloorLight::arrive(const FloorLamp& lamp,
+                                const FloorRay& ray,
+                                const Vector3d* from) const {
     const BeamLight& beam = strobes_[lamp.strobe].beam;
-    const double intensity =
-        from != nullptr ? beam.continued(light.towards, *from) : beam.at(light.towards);
-    if (intensity == 0.0) return light;
-    const double length2 = light.towards.squaredNorm();
-    const double length = std::sqrt(length2);
-    const double arriving = lamp.share * intensity * ray.down * ray.down / length2;
-    light.diffuse = arriving * lamp.floor_m * ray.down / length;
-    light.path_m = (ray.height_m + length) / ray.down;
-    if (rig_.seafloor.phong == 0.0) return light;
-    const double aligned =
-        (2.0 * ray.down * ray.down * lamp.floor_m - ray.direction.dot(light.towards)) / length;
-    if (aligned > 0.0)  // none, where phong_size is 0 too
-        light.highlight =
-            arriving * rig_.seafloor.phong * std::pow(aligned, rig_.seafloor.phong_size);
-    return light;
+    return arrival(rig_.seafloor,
+                   lamp.position_m,
+                   lamp.floor_m,
+                   lamp.share,
+                   ray,
+                   [&](const Vector3d& towards) {
+                       return from != nullptr ? beam.continued(towards, *from) : beam.at(towards);
+                   });
 }
 
 void FloorLight::add(const FloorLamp& lamp,
@@ -143,7 +133,7 @@ void FloorLight::add(const FloorLamp& lamp,
                      PlaceLight& light) const {
     const StrobeLight& strobe = strobes_[lamp.strobe];
     const LampSignal& signal = *strobe.signal;
-    std::array<Arrival, kIndexNodes> at_nodes;
+    std::array<FloorArrival, kIndexNodes> at_nodes;
     double last_place = -1.0;
     const Vector3d* const middle = rays[0].sees_floor() ? &at_nodes[0].towards : nullptr;
     for (std::size_t j = 0; j < rays_.nodes(); ++j) {
@@ -163,7 +153,7 @@ void FloorLight::add(const FloorLamp& lamp,
     double diffuse = 0.0;
     double highlight = 0.0;
     for (std::size_t h = 0; h < kHalfWay.size(); ++h) {
-        const Arrival found = arrive(lamp, rays[kIndexNodes + h], middle);
+        const FloorArrival found = arrive(lamp, rays[kIndexNodes + h], middle);
         double told_diffuse = 0.0;
         double told_highlight = 0.0;
         for (std::size_t j = 0; j < kIndexNodes; ++j) {
@@ -205,7 +195,7 @@ Signals FloorLight::dispersed(std::span<const FloorLamp* const> lamps,
         for (const FloorLamp* lamp : lamps) {
             const LampSignal& signal = *strobes_[lamp->strobe].signal;
             const Vector3d middle = towards(lamp->position_m, rays[0]);
-            const Arrival light = arrive(*lamp, ray, rays[0].sees_floor() ? &middle : nullptr);
+            const FloorArrival light = arrive(*lamp, ray, rays[0].sees_floor() ? &middle : nullptr);
             const double place = place_in_table(light.path_m);
             if (light.diffuse == 0.0 || place < 0.0 || place >= table_.steps.count) continue;
             const double left =

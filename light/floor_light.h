@@ -5,17 +5,8 @@
 //   S_c = sum over lamps of  share I(w) cos(i) / d^2 T_c(d + r)  +  highlight
 //
 // share   the strobe's power over pi and its number of lamps
-// I(w)    beam, per direction (beam_light.h)            cos(i)  at the floor
+// I(w)    beam, per direction (beam_light.h)            cos(i)  at the floor (floor_arrival.h)
 // d, r    lamp to floor, floor to camera, in water      T_c     signal by path (signal_table.h)
-//
-// With V the way of the light of a lamp, h its height over the floor, and D, w and H of the ray
-// (floor_ray.h),
-//
-//   d = |V|/w     r = H/w     cos(i) / d^2 = h w^3 / |V|^3
-//
-// and for the highlight, with m the ray mirrored at the floor and l the way to the lamp,
-//
-//   m.l = (2 w^2 h - D.V) / |V|          phong I / d^2 (m.l)^phong_size
 //
 // Behind a port every wavelength has a ray of its own. G, what one lamp counts, is a smooth
 // function of the water's index, so the signal is
@@ -39,6 +30,7 @@
 #pragma once
 
 #include "light/beam_light.h"
+#include "light/floor_arrival.h"
 #include "light/floor_ray.h"
 #include "light/index_nodes.h"
 #include "light/ray_table.h"
@@ -127,15 +119,9 @@ class FloorLight {
         const LampSignal* signal;
     };
     // Of one lamp along one ray.
-    struct Arrival {
-        Eigen::Vector3d towards = Eigen::Vector3d::Zero();
-        double diffuse = 0.0;
-        double highlight = 0.0;
-        double path_m = 0.0;
-    };
-    [[nodiscard]] Arrival arrive(const FloorLamp& lamp,
-                                 const FloorRay& ray,
-                                 const Eigen::Vector3d* from) const;
+    [[nodiscard]] FloorArrival arrive(const FloorLamp& lamp,
+                                      const FloorRay& ray,
+                                      const Eigen::Vector3d* from) const;
     [[nodiscard]] double place_in_table(double path_m) const {
         return (path_m - table_.steps.first_m) * table_.steps.steps_per_m;
     }

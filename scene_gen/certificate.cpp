@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/certificate.h"
 
-#include "scene_gen/floor_light.h"
+#include "light/floor_arrival.h"
 #include "scene_gen/light_paths.h"
 #include "spectral/panel_quadrature.h"
 #include "spectral/quadrature_certificate.h"
@@ -68,41 +68,40 @@ std::vector<Node> nodes_of(const Rig& rig) {
 }
 
 // lit: by the strobe at power 1.
-double radiance(const SourceLight& light, std::size_t strobe, const FloorLight& lit) {
-    return light.flux[strobe] *
-           (light.reflectance.front() * lit.diffuse_per_m2 + lit.specular_per_m2) *
+double radiance(const SourceLight& light, std::size_t strobe, const FloorArrival& lit) {
+    return light.flux[strobe] * (light.reflectance.front() * lit.diffuse + lit.highlight) *
            std::exp(-light.attenuation_per_m * lit.path_m);
 }
 
-FloorLight between(const FloorLight& a, const FloorLight& b, double share) {
-    return {.diffuse_per_m2 = std::lerp(a.diffuse_per_m2, b.diffuse_per_m2, share),
-            .specular_per_m2 = std::lerp(a.specular_per_m2, b.specular_per_m2, share),
+FloorArrival between(const FloorArrival& a, const FloorArrival& b, double share) {
+    return {.diffuse = std::lerp(a.diffuse, b.diffuse, share),
+            .highlight = std::lerp(a.highlight, b.highlight, share),
             .path_m = std::lerp(a.path_m, b.path_m, share)};
 }
 
-struct Signals {
+struct RuleSignals {
     std::array<double, kChannels> right{};
     std::array<double, kChannels> found{};
 };
 
 // Nothing where the pixel shows no floor.
-std::optional<Signals> signals_of(const Rig& rig,
-                                  double column,
-                                  double row,
-                                  std::span<const Node> nodes,
-                                  std::span<const PlannedWavelength> rule) {
+std::optional<RuleSignals> signals_of(const Rig& rig,
+                                      double column,
+                                      double row,
+                                      std::span<const Node> nodes,
+                                      std::span<const PlannedWavelength> rule) {
     const auto ray_at = [&](double nm) { return pixel_ray(rig, column, row, nm); };
     const WaterRay middle = ray_at(geometry_nm(rig.camera.range, kGeometryPoints / 2));
     const auto distance_m = distance_to(floor_plane(rig.sled), middle);
     if (!distance_m) return std::nullopt;
     const Eigen::Vector3d lobes_at_m = middle.origin_m + *distance_m * middle.direction;
-    Signals signals;
+    RuleSignals signals;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
-        std::vector<FloorLight> lit;
+        std::vector<FloorArrival> lit;
         for (std::size_t point = 0; point < kGeometryPoints; ++point) {
             const auto light =
-                floor_light(rig, strobe, ray_at(geometry_nm(rig.camera.range, point)), lobes_at_m);
+                arrival_of(rig, strobe, ray_at(geometry_nm(rig.camera.range, point)), lobes_at_m);
             if (!light) return std::nullopt;
             lit.push_back(*light);
         }
@@ -112,7 +111,7 @@ std::optional<Signals> signals_of(const Rig& rig,
             for (std::size_t c = 0; c < kChannels; ++c) signals.right[c] += node.response[c] * L;
         }
         for (const PlannedWavelength& w : rule) {
-            const auto light = floor_light(rig, strobe, ray_at(w.index_nm), lobes_at_m);
+            const auto light = arrival_of(rig, strobe, ray_at(w.index_nm), lobes_at_m);
             if (!light) return std::nullopt;
             const double L = radiance(w.light, s, *light);
             for (std::size_t c = 0; c < kChannels; ++c) signals.found[c] += w.weight[c] * L;
@@ -127,7 +126,7 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
     const std::vector<Node> nodes = nodes_of(rig);
     Rig at_power_1 = rig;
     for (Strobe& strobe : at_power_1.strobes) strobe.power = 1.0;
-    std::vector<Signals> image;
+    std::vector<RuleSignals> image;
     for (const double row : places_along(rig.camera.height_px)) {
         for (const double column : places_along(rig.camera.width_px)) {
             const auto signals = signals_of(at_power_1, column, row, nodes, rule);
@@ -137,8 +136,8 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
     std::array<double, kChannels> error{};
     for (std::size_t c = 0; c < kChannels; ++c) {
         double brightest = 0.0;
-        for (const Signals& pixel : image) brightest = std::max(brightest, pixel.right[c]);
-        for (const Signals& pixel : image) {
+        for (const RuleSignals& pixel : image) brightest = std::max(brightest, pixel.right[c]);
+        for (const RuleSignals& pixel : image) {
             if (!(pixel.right[c] > kBlackShare * brightest)) continue;
             const double off = std::abs(pixel.found[c] / pixel.right[c] - 1.0);
             // What is no number is the largest of errors.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
+#include "light/floor_arrival.h"
 #include "rig/geometry.h"
 #include "rig/solid.h"
-#include "scene_gen/floor_light.h"
 #include "scene_gen/frame_groups.h"
 
 #include <algorithm>
@@ -51,12 +51,12 @@ std::vector<double> light_at(const Rig& rig,
     const double reflectance = rig.seafloor.reflectance.at(lambda_nm);
     std::vector<double> kinds(2 * rig.strobes.size());
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        const auto lit = floor_light(rig, rig.strobes[s], ray, cones_at_m);
+        const auto lit = arrival_of(rig, rig.strobes[s], ray, cones_at_m);
         if (!lit) return {};
         const double flux =
             rig.strobes[s].spectrum.at(lambda_nm) * std::exp(-K_per_m * lit->path_m);
-        kinds[2 * lamp_of_strobe[s]] += flux * reflectance * lit->diffuse_per_m2;
-        kinds[2 * lamp_of_strobe[s] + 1] += flux * lit->specular_per_m2;
+        kinds[2 * lamp_of_strobe[s]] += flux * reflectance * lit->diffuse;
+        kinds[2 * lamp_of_strobe[s] + 1] += flux * lit->highlight;
     }
     return kinds;
 }

@@ -9,6 +9,7 @@
 #include "image/image_size.h"
 #include "rig/beam/photometric_file.h"
 #include "rig/camera/calibration_file.h"
+#include "rig/camera/lens.h"
 #include "rig/file/key_depth.h"
 #include "rig/file/mesh_reader.h"
 #include "rig/file/rig_files.h"
@@ -54,6 +55,7 @@ constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kFovDeg{0.01, 175.0};
 constexpr Bounds kVignettingTerm{-1e3, 1e3};
+constexpr Bounds kScale{0.001, 1.0};
 constexpr Bounds kLevelDn{0.0, 1e9};
 constexpr Bounds kExposureMs{1e-4, 1e6};
 constexpr Bounds kIso{0.1, 1e7};
@@ -335,11 +337,20 @@ Readout read_readout(Section& camera, bool is_mono) {
     return readout;
 }
 
+// The same view in fewer pixels, whose shape is kept: a row at the edge may be cut, or won, in
+// part.
+void scale_down(double scale, Camera& camera) {
+    const auto width_px = std::max(1, static_cast<int>(std::lround(scale * camera.width_px)));
+    const double factor = static_cast<double>(camera.width_px) / width_px;
+    const auto height_px = std::max(1, static_cast<int>(std::lround(camera.height_px / factor)));
+    enlarge_pixels(camera, factor, width_px, height_px);
+}
+
 Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
     section.refuse_keys_but(
         "resolution, pixel_pitch_um, focal_length_mm, fov_deg, calibration, vignetting, range_nm, "
         "response, port, black_level_dn, white_level_dn, bayer, exposure_ms, iso, f_number, "
-        "gain_dn_per_e, read_noise_e, saturation_e, position_m, orientation_deg");
+        "gain_dn_per_e, read_noise_e, saturation_e, position_m, orientation_deg, scale");
     const std::optional<CameraCalibration> calibration = read_calibration(section, files);
     const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section, files);
@@ -366,6 +377,7 @@ Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
         camera.port = read_port(section.section("port", "a table"));
     }
     read_place(section, mounting);
+    if (section.has("scale")) scale_down(section.number("scale", kScale), camera);
     return camera;
 }
 

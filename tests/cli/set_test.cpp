@@ -70,6 +70,20 @@ TEST_F(CommandSet, StandsInTheManifest) {
             "aphotic: --set: found with --frames; allowed: with a rig\n");
 }
 
+// --scale is the key that it sets, for what makes images of a rig.
+TEST_F(CommandSet, ScalesTheCamera) {
+    const auto small = plan("--scale 0.5");
+    EXPECT_EQ(small["rig_settings"], nlohmann::json({"camera.scale=0.5"}));
+    EXPECT_EQ(small, plan("--set camera.scale=0.5"));
+    EXPECT_EQ(small["width_px"].get<int>(), (plan({})["width_px"].get<int>() + 1) / 2);
+    refused("trace rig.toml -o out --scale 2", "camera.scale: found 2; allowed: 0.001 to 1");
+    for (const std::string& command :
+         Arguments("render plan generate trace validate study lightmap survey fit correct"))
+        EXPECT_EQ(has(aphotic(fmt::format("{} --help", command)).out, "\n  --scale FACTOR "),
+                  command != "fit" && command != "correct")
+            << command;
+}
+
 TEST_F(CommandSet, RefusesWhatTheReaderRefuses) {
     write_file(path("beam.csv"), "angle_deg,intensity\n0,1\n90,0\n");
     fs::create_directory(path("raw"));

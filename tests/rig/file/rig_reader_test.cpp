@@ -4,7 +4,9 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "rig/camera/calibration_file.h"
+#include "rig/camera/lens.h"
 #include "rig/geometry_signature.h"
+#include "support/has.h"
 #include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
@@ -749,6 +751,29 @@ TEST_F(CalibratedRig, NeedsNeitherResolutionNorPitch) {
     EXPECT_EQ(rig.camera.height_px, 1024);
     EXPECT_EQ(rig.camera.lens, read(kByCalibration).camera.lens);
     EXPECT_NEAR(rig.camera.focal_length_m / rig.camera.pixel_pitch_m, 2000.0, 1e-9);
+}
+
+// A small version of the rig: edges see what they saw, of a lens and of a pinhole.
+TEST_F(CalibratedRig, HasTheSameViewInFewerPixels) {
+    constexpr double kSight = 1e-12;
+    calibrate(kCamchain);
+    for (const std::string_view lens : {"calibration = \"cam\"", "focal_length_mm = 12.9"}) {
+        const Rig whole = read(with(6, lens));
+        const Rig tenth = read(with(6, std::string(lens) + "\nscale = 0.1"));
+        EXPECT_EQ(tenth.camera.width_px, 136);
+        EXPECT_EQ(tenth.camera.height_px, 102);  // of 1024
+        for (const double across : {0.0, 0.3, 1.0}) {
+            const auto sight = [&](const Camera& camera) {
+                return direction_in_air(camera, across * camera.width_px, 0.5 * camera.height_px);
+            };
+            EXPECT_LT((sight(tenth.camera) - sight(whole.camera)).norm(), kSight)
+                << lens << ' ' << across;
+        }
+    }
+    for (const char* scale : {"0", "1.5", "-1"})
+        EXPECT_TRUE(has(error(with(6, fmt::format("focal_length_mm = 12\nscale = {}", scale))),
+                        fmt::format("camera.scale: found {}; allowed: 0.001 to 1", scale)))
+            << scale;
 }
 
 // So that its images are what they always were, to the bit.

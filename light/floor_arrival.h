@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a lamp does to the place of the floor that a ray shows, without wavelength: the one place
+// where this is written, but for the reference.
+//
+//   S = Phi (rho diffuse + highlight) exp(-K path)
+//
+//   diffuse   = share I cos(i) / d^2                     share   power over pi and number of lamps
+//   highlight = share I phong max(0, m.l)^size / d^2     I       the beam's intensity
+//   path      = d + r
+//
+// With V, D, w and H of the ray (floor_ray.h), h the lamp's height over the floor, m the ray
+// mirrored at the floor and l the way to the lamp,
+//
+//   d = |V|/w     r = H/w     cos(i) / d^2 = h w^3 / |V|^3     m.l = (2 w^2 h - D.V) / |V|
+//
+// Right over the floor at a metre, a lamp of share 1 and I = 1 gives diffuse = 1.
+#pragma once
+
+#include "light/floor_ray.h"
+#include "rig/rig.h"
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <optional>
+
+namespace aphotic {
+
+struct FloorArrival {
+    Eigen::Vector3d towards = Eigen::Vector3d::Zero();  // V
+    double diffuse = 0.0;
+    double highlight = 0.0;
+    double path_m = 0.0;
+};
+
+// intensity(V): I. Nothing of a ray that sees no floor, and no path where there is no light.
+template <typename Intensity>
+[[nodiscard]] FloorArrival arrival(const Seafloor& floor,
+                                   const Eigen::Vector3d& lamp_m,
+                                   double lamp_height_m,
+                                   double share,
+                                   const FloorRay& ray,
+                                   const Intensity& intensity) {
+    FloorArrival light;
+    if (!ray.sees_floor()) return light;
+    light.towards = towards(lamp_m, ray);
+    const double I = intensity(light.towards);
+    if (I == 0.0) return light;
+    const double length2 = light.towards.squaredNorm();
+    const double length = std::sqrt(length2);
+    const double arriving = share * I * ray.down * ray.down / length2;
+    light.diffuse = arriving * lamp_height_m * ray.down / length;
+    light.path_m = (ray.height_m + length) / ray.down;
+    if (floor.phong == 0.0) return light;
+    const double aligned =
+        (2.0 * ray.down * ray.down * lamp_height_m - ray.direction.dot(light.towards)) / length;
+    if (aligned > 0.0)  // none, where phong_size is 0 too
+        light.highlight = arriving * floor.phong * std::pow(aligned, floor.phong_size);
+    return light;
+}
+
+// Of a strobe as a point, whose beam has no edge between this ray and a place that it lights for
+// sure; none where the ray sees no floor, and no light of a lamp that is not over it.
+[[nodiscard]] std::optional<FloorArrival> arrival_of(const Rig& rig,
+                                                     const Strobe& strobe,
+                                                     const WaterRay& ray,
+                                                     const Eigen::Vector3d& lit_m);
+
+}  // namespace aphotic
