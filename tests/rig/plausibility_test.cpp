@@ -303,6 +303,7 @@ const std::set<std::string_view> kElsewhere{
     "beam.*.cones[].weight",          // their sum
     "strobe[].aim.tilt_deg",          // all strobes
     "strobe[].direction",             // geometry
+    "camera.scale",                   // of a small version, as small as one likes
     "camera.resolution",              // of whole pixels, and the calibration has it too
     "camera.vignetting.radial",       // the reader keeps the image bright
     "camera.port.normal",             // a direction

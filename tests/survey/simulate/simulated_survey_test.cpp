@@ -86,8 +86,9 @@ TEST_F(Simulated, TheVeilNeverMetTheFloor) {
     ASSERT_TRUE(made.rig.water.scatters());
     make(made);
     const Leg& leg = made.legs.front();
-    const Lightmap map =
-        LightmapMaker(made.rig, paths_of(made.rig, made.corners), {}).map(leg.sled);
+    const LightmapMaker maker(
+        made.rig, paths_of(made.rig, made.corners), {.veil_tolerance = made.tolerance});
+    const Lightmap map = maker.map(leg.sled);
     const CameraImage truth = read_signals(truth_file(made, leg));
     const std::vector<float> texture = texture_of(made, leg);
     for (std::size_t i = 0; i < truth.samples.size(); ++i) {
