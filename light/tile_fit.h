@@ -16,23 +16,24 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 
 namespace aphotic {
 
 inline constexpr int kTilePoints = 7;
 inline constexpr int kTileGaps = kTilePoints - 1;
-inline constexpr std::array<std::array<int, 2>, 2 * kTileGaps> kTileChecks{{{0, 0},
-                                                                            {5, 5},
-                                                                            {0, 5},
-                                                                            {5, 0},
-                                                                            {1, 3},
-                                                                            {2, 1},
-                                                                            {3, 4},
-                                                                            {4, 2},
-                                                                            {1, 2},
-                                                                            {2, 4},
-                                                                            {3, 1},
-                                                                            {4, 3}}};
+inline constexpr std::array<std::array<int, 2>, std::size_t{2} * kTileGaps> kTileChecks{{{0, 0},
+                                                                                         {5, 5},
+                                                                                         {0, 5},
+                                                                                         {5, 0},
+                                                                                         {1, 3},
+                                                                                         {2, 1},
+                                                                                         {3, 4},
+                                                                                         {4, 2},
+                                                                                         {1, 2},
+                                                                                         {2, 4},
+                                                                                         {3, 1},
+                                                                                         {4, 3}}};
 inline constexpr int kTilePixels = 256;  // along a side, at most
 
 using TileNodes = Eigen::Matrix<double, kTilePoints, kTilePoints>;  // (row, column)
