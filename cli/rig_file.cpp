@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rig_file.h"
-#include "cli/option_words.h"
 
 #include "base/error.h"
+#include "cli/option_checks.h"
+#include "cli/option_words.h"
 #include "cli/terminal.h"
 #include "rig/file/rig_reader.h"
 #include "rig/plausibility.h"
@@ -51,7 +52,9 @@ void add_set_option(CLI::App& app) {
     const auto scale = [](const double& factor) {
         set_keys.push_back(fmt::format("camera.scale={}", factor));
     };
-    add_option_function<double>(app, "--scale", scale)->needs(rig);
+    add_option_function<double>(app, "--scale", scale)
+        ->check(in_range(kLeastScale, 1.0))
+        ->needs(rig);
 }
 
 std::optional<ManifestSettings> rig_settings() {

@@ -55,7 +55,7 @@ constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kFovDeg{0.01, 175.0};
 constexpr Bounds kVignettingTerm{-1e3, 1e3};
-constexpr Bounds kScale{0.001, 1.0};
+constexpr Bounds kScale{kLeastScale, 1.0};
 constexpr Bounds kLevelDn{0.0, 1e9};
 constexpr Bounds kExposureMs{1e-4, 1e6};
 constexpr Bounds kIso{0.1, 1e7};

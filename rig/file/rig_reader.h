@@ -17,6 +17,8 @@
 
 namespace aphotic {
 
+inline constexpr double kLeastScale = 0.001;  // of camera.scale
+
 // User tables named in the file are looked up beside it.
 [[nodiscard]] Rig read_rig(const std::filesystem::path& file);
 

@@ -76,8 +76,7 @@ TEST_F(CommandSet, ScalesTheCamera) {
     EXPECT_EQ(small["rig_settings"], nlohmann::json({"camera.scale=0.5"}));
     EXPECT_EQ(small, plan("--set camera.scale=0.5"));
     EXPECT_EQ(small["width_px"].get<int>(), (plan({})["width_px"].get<int>() + 1) / 2);
-    refused("trace rig.toml -o out --scale 2",
-            "camera.scale: found 2; allowed: a number from 0.001 to 1");
+    refused("trace rig.toml -o out --scale 2", "--scale: found 2; allowed: 0.001 to 1");
     for (const std::string& command :
          Arguments("render plan generate trace validate study lightmap survey fit correct"))
         EXPECT_EQ(has(aphotic(fmt::format("{} --help", command)).out, "\n  --scale FACTOR "),
