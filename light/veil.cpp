@@ -538,13 +538,8 @@ double veil_error(const Rig& rig, unsigned points) {
 }
 
 VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm) {
-    return sight_of(rig, floor_plane(rig.sled), column, row, lambda_nm);
-}
-
-VeilSight sight_of(
-    const Rig& rig, const Plane& floor, double column, double row, double lambda_nm) {
     const WaterRay ray = pixel_ray(rig, column, row, lambda_nm);
-    const auto length_m = distance_to(floor, ray);
+    const auto length_m = distance_to(floor_plane(rig.sled), ray);
     return {ray, length_m.value_or(std::numeric_limits<double>::infinity())};
 }
 

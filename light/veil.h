@@ -181,7 +181,5 @@ struct VeilSight {
     double length_m = 0.0;
 };
 [[nodiscard]] VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm);
-[[nodiscard]] VeilSight sight_of(
-    const Rig& rig, const Plane& floor, double column, double row, double lambda_nm);
 
 }  // namespace aphotic
