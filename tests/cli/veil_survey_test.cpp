@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -167,6 +168,27 @@ TEST_F(VeilSurvey, ARunWithoutIsAnother) {
     correct(30, "--no-veil");
     const CommandResult again = run_aphotic(folder(), correction(30));
     EXPECT_TRUE(has(again.out, "3 images corrected")) << again.err;
+}
+
+// A map's promise counts it, and a correction to another is another.
+TEST_F(VeilSurvey, HasTheToleranceThatWasAskedFor) {
+    constexpr double kRounding = 1e-12;
+    const auto promise = [](const std::string& more) {
+        const CommandResult run =
+            run_aphotic(folder(), "lightmap rig.toml -o map.exr --json " + more);
+        return nlohmann::json::parse(run.out).at("promise").at("error").get<double>();
+    };
+    EXPECT_NEAR(promise("--tolerance 0.01") - promise("--tolerance 0.002"), 0.008, kRounding);
+    EXPECT_NEAR(promise("--tolerance 0.0001"), promise(""), kRounding);
+
+    const auto images_corrected = [](const std::string& tolerance) {
+        return run_aphotic(folder(), correction(30) + ("--tolerance " + tolerance)).out;
+    };
+    EXPECT_TRUE(has(images_corrected("0.01"), "3 images corrected"));
+    EXPECT_FALSE(has(images_corrected("0.01"), "3 images corrected"));
+    EXPECT_TRUE(has(images_corrected("0.001"), "3 images corrected"));
+    // 0.001 is a correction's own.
+    EXPECT_FALSE(has(run_aphotic(folder(), correction(30)).out, "3 images corrected"));
 }
 
 }  // namespace
