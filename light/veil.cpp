@@ -537,6 +537,10 @@ double veil_error(const Rig& rig, unsigned points) {
     return worst;
 }
 
+unsigned veil_points(const Rig& rig, double error) {
+    return veil_error(rig, kVeilMapPoints) <= error ? kVeilMapPoints : kVeilPoints;
+}
+
 VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm) {
     const WaterRay ray = pixel_ray(rig, column, row, lambda_nm);
     const auto length_m = distance_to(floor_plane(rig.sled), ray);

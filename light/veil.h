@@ -174,6 +174,9 @@ class Veil {
 inline constexpr double kDimVeilShare = 1e-6;
 [[nodiscard]] double veil_error(const Rig& rig, unsigned points = kVeilPoints);
 
+// kVeilMapPoints where these are right to the error, as veil_error() measures it; else kVeilPoints.
+[[nodiscard]] unsigned veil_points(const Rig& rig, double error);
+
 // The camera's ray of a pixel's centre in water, and how far it goes to the bare floor; infinite
 // when it does not come down on it.
 struct VeilSight {

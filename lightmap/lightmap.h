@@ -117,7 +117,9 @@ class LightmapMaker {
     PathRange direct_;  // as they were asked for
     CameraRays rays_;
     SignalTable table_;
-    std::vector<float> vignetting_;        // by pixel; empty: none
+    std::vector<float> vignetting_;  // by pixel; empty: none
+    unsigned veil_points_ =
+        kVeilMapPoints;  // of the rig as it was given, wherever strobes are placed
     std::shared_ptr<const VeilMap> veil_;  // none where the water does not scatter
 };
 

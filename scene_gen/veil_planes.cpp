@@ -24,11 +24,6 @@ constexpr int kBlockRows = 2 * kVeilTile_px;
 // Deflate takes longer than all the rest, for a third of the size.
 constexpr int kNotCompressed = 0;
 
-// Few points where they do: not where light is lost within a panel, as in water like milk.
-unsigned points_of(const Rig& rig) {
-    return veil_error(rig, kVeilMapPoints) <= kTableError ? kVeilMapPoints : kVeilPoints;
-}
-
 // Planes that have the same rays.
 struct Planes {
     VeilMap veil;
@@ -43,7 +38,7 @@ std::vector<Planes> planes_of(const Rig& rig,
                               int threads) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
-    const unsigned points = points_of(rig);
+    const unsigned points = veil_points(rig, kTableError);
     std::vector<double> lambda_nm;
     for (const PlannedWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
     std::span<const double> rest = lambda_nm;
@@ -168,7 +163,7 @@ void require_bare_floor_under_veil(const Rig& rig) {
 }
 
 double veil_plane_error(const Rig& rig) {
-    return kVeilOfSignal + veil_error(rig, points_of(rig));
+    return kVeilOfSignal + veil_error(rig, veil_points(rig, kTableError));
 }
 
 std::array<RuleQuality, kChannels> with_veil(std::array<RuleQuality, kChannels> quality,
