@@ -7,6 +7,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/number.h"
 #include "base/words.h"
 #include "base/work_folder.h"
 #include "cli/command.h"
@@ -25,10 +26,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
@@ -39,12 +42,16 @@ const std::map<std::string, FitBeamKind> kBeams{{"table", FitBeamKind::Table},
                                                 {"cosine", FitBeamKind::Cosine},
                                                 {"optics", FitBeamKind::Optics}};
 
+const std::map<std::string, bool> kVignettings{{"cosine", false}, {"radial", true}};
+
 struct FitCommandOptions {
     SurveyInput input;
     std::vector<std::string> maps;
     std::filesystem::path folder;
     FitOptions fit;
     std::vector<std::string> free;
+    std::vector<std::string> priors;
+    bool is_radial = false;
     double attitude_error_deg = 0.5;
     int blocks = kBlocksAcross;
 };
@@ -71,22 +78,11 @@ constexpr std::array kOfImages{"--nav",
                                "--white-level",
                                "--exposure",
                                "--allow-skipped"};
-constexpr std::array kOfBeams{"--beam", "--beam-each", "--parts"};
-
-void require_use(const CLI::App& app, const FitCommandOptions& options) {
+void require_use(const CLI::App& app) {
     for (const char* option : kOfImages) {
         if (is_given(app, "--maps") && is_given(app, option))
             throw InputError("{}: found with --maps; allowed: with --images", option);
     }
-    const bool is_beam_free = !is_given(app, "--free") || std::ranges::count(options.free, "beam");
-    for (const char* option : kOfBeams) {
-        if (!is_beam_free && is_given(app, option)) {
-            throw InputError(
-                "{}: found with a beam that is not fitted; allowed: with beam in --free", option);
-        }
-    }
-    if (is_given(app, "--parts") && options.fit.beam != FitBeamKind::Table)
-        throw InputError("--parts: found with another beam; allowed: with --beam table");
 }
 
 // The rig to begin with is kept.
@@ -108,6 +104,28 @@ void require_one_source(const CLI::App& app) {
         throw InputError("--images: found no navigation; allowed: with --nav FILE");
 }
 
+// As WORD=SPREAD, where the unit may follow: aim=2deg, altitude=0.1m.
+std::map<std::string, double> priors_in(const std::vector<std::string>& told) {
+    std::map<std::string, double> priors;
+    for (const std::string& one : told) {
+        const std::size_t at = one.find('=');
+        const std::string word = one.substr(0, at);
+        std::string_view number = std::string_view(one).substr(std::min(at, one.size() - 1) + 1);
+        const bool is_angle = word == "aim" || word == "attitude" || word.ends_with("_deg");
+        const bool is_length = word == "altitude" || word.ends_with("_m");
+        if (is_angle && number.ends_with("deg")) number.remove_suffix(3);
+        if (is_length && number.ends_with("m")) number.remove_suffix(1);
+        const auto spread = read_number<double>(number);
+        if (word.empty() || !spread || !priors.emplace(word, *spread).second) {
+            throw InputError(
+                "--prior: found '{}'; allowed: WORD=SPREAD, each word once, such as aim=2deg, "
+                "power=0.1 or altitude=0.1m",
+                one);
+        }
+    }
+    return priors;
+}
+
 // The strongest: all are in fit.json.
 void print_confounded(const std::vector<Confounded>& pairs) {
     constexpr std::size_t kShown = 6;
@@ -124,44 +142,38 @@ void print_result(const std::string& title,
                   const FitResult& result,
                   const std::filesystem::path& folder) {
     say("{}: {}\n", title, words_of(result));
-    for (const FittedNumber& one : result.numbers) {
-        say("  {:<34} {:>10.4g} +- {:.2g}{}\n",
-            one.key,
-            one.value,
-            one.error,
-            one.is_at_bound ? "  at the end of its range" : "");
-    }
-    for (const NotTold& one : result.held) say("held: {}\n", words_of(one));
+    for (const FittedNumber& one : result.numbers)
+        if (!is_curve(one)) say("  {:<34} {:>10.4g} +- {:.2g}\n", one.key, one.value, one.error);
+    for (const FittedNumber& one : result.numbers)
+        if (!one.is_determined) say("{}\n", words_of(one));
     if (!result.fixed.empty())
         say("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
     print_confounded(result.confounded);
     for (const Suspicion& one : result.looks_wrong)
         say("looks wrong: {}: {}\n", one.about, one.what);
-    say("{} are off by {:.2g} of the signal, rms, of which {:.2g} stays in place from image to "
-        "image\n",
-        counted(result.blocks, "block"),
-        result.left.residual,
-        result.left.pattern);
+    say("correction by this rig is expected to be even to {:.2g} %\n", 100.0 * result.unevenness);
     say("  {}  the rig\n", (folder / kFittedRig).string());
     say("  {}  errors and covariance\n", (folder / kFitNumbers).string());
     say("  {}  to look at\n", (folder / kFitPage).string());
 }
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
-    silence_fit_log();
     require_one_source(app);
-    require_use(app, options);
+    require_use(app);
     require_other_rig(options);
     const RigText text = read_rig_text_as_set(options.input.rig);
     const Rig rig = text.rig();
     naming(options.input.rig, [&] { require_bare_floor(rig); });
     check_plausible(rig, options.input.rig, options.input.strict);
-    const WorkFolder place(options.folder);
-    const RunWatch watch = terminal_watch(options.input.strict);
-    const FitSamples samples = samples_for(options, rig, watch);
     FitOptions fit_options = options.fit;
     fit_options.attitude_error_rad = options.attitude_error_deg * kRadiansPerDegree;
     if (is_given(app, "--free")) fit_options.free = options.free;
+    if (is_given(app, "--vignetting")) fit_options.has_radial_vignetting = options.is_radial;
+    fit_options.priors = priors_in(options.priors);
+    require_fit_options(text, fit_options);
+    const WorkFolder place(options.folder);
+    const RunWatch watch = terminal_watch(options.input.strict);
+    const FitSamples samples = samples_for(options, rig, watch);
     const FitResult result = fit(text, samples, fit_options, watch);
     write_fitted_rig(text, result, options.folder);
     const nlohmann::ordered_json json = to_json(result);
@@ -187,8 +199,10 @@ Action configure_fit(CLI::App& app) {
     add_navigation_options(app, options->input);
     add_option(app, "--beam", options->fit.beam)->transform(word_of(kBeams));
     add_flag(app, "--beam-each", options->fit.has_beam_each);
-    add_option(app, "--parts", options->fit.parts)->check(in_range(4, 200));
     add_option(app, "--free", options->free)->delimiter(',');
+    add_option(app, "--hold", options->fit.hold)->delimiter(',');
+    add_option(app, "--prior", options->priors)->delimiter(',');
+    add_option(app, "--vignetting", options->is_radial)->transform(word_of(kVignettings));
     add_option(app, "--altitude-error", options->fit.altitude_error_m)->check(not_negative());
     add_option(app, "--attitude-error", options->attitude_error_deg)->check(not_negative());
     add_option(app, "--blocks", options->blocks)->check(in_range(8, 1000));

@@ -27,6 +27,21 @@
 
 namespace aphotic {
 
+// Of an even light, of a lamp at the height h, at the length |V|.
+template <typename T>
+struct Arriving {
+    T per_area;  // cos(i) / d^2  [1/m^2]
+    T path_m;    // d + r
+};
+template <typename T>
+[[nodiscard]] Arriving<T> arriving(const T& lamp_height_m,
+                                   const BasicFloorRay<T>& ray,
+                                   const T& length) {
+    const T share = ray.down / length;
+    return {.per_area = lamp_height_m * share * share * share,
+            .path_m = (ray.height_m + length) / ray.down};
+}
+
 struct FloorArrival {
     Eigen::Vector3d towards = Eigen::Vector3d::Zero();  // V
     double diffuse = 0.0;
@@ -47,16 +62,16 @@ template <typename Intensity>
     light.towards = towards(lamp_m, ray);
     const double I = intensity(light.towards);
     if (I == 0.0) return light;
-    const double length2 = light.towards.squaredNorm();
-    const double length = std::sqrt(length2);
-    const double arriving = share * I * ray.down * ray.down / length2;
-    light.diffuse = arriving * lamp_height_m * ray.down / length;
-    light.path_m = (ray.height_m + length) / ray.down;
+    const double length = light.towards.norm();
+    const Arriving<double> even = arriving(lamp_height_m, ray, length);
+    light.diffuse = share * I * even.per_area;
+    light.path_m = even.path_m;
     if (floor.phong == 0.0) return light;
     const double aligned =
         (2.0 * ray.down * ray.down * lamp_height_m - ray.direction.dot(light.towards)) / length;
     if (aligned > 0.0)  // none, where phong_size is 0 too
-        light.highlight = arriving * floor.phong * std::pow(aligned, floor.phong_size);
+        light.highlight = share * I * ray.down * ray.down / (length * length) * floor.phong *
+                          std::pow(aligned, floor.phong_size);
     return light;
 }
 

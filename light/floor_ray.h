@@ -9,6 +9,9 @@
 //   V = w (P - s) = w (o - s) + H D
 //
 // a vector that stays finite towards the horizon.
+//
+// The scalar T is a number, or one with its derivatives (ceres::Jet), where a fit asks how all this
+// moves with the floor: rays and lamps are the sled's own and stay.
 #pragma once
 
 #include "rig/geometry.h"
@@ -17,14 +20,19 @@
 
 namespace aphotic {
 
-struct FloorRay {
+template <typename T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+
+template <typename T>
+struct BasicFloorRay {
     Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
-    double down = 0.0;      // w
-    double height_m = 0.0;  // H
+    T down = T(0.0);      // w
+    T height_m = T(0.0);  // H
 
     [[nodiscard]] bool sees_floor() const { return down > 0.0 && height_m > 0.0; }
 };
+using FloorRay = BasicFloorRay<double>;
 
 [[nodiscard]] inline FloorRay floor_ray(const WaterRay& ray, const Plane& floor) {
     return {.origin_m = ray.origin_m,
@@ -34,9 +42,11 @@ struct FloorRay {
 }
 
 // V; 0 where the ray sees no floor.
-[[nodiscard]] inline Eigen::Vector3d towards(const Eigen::Vector3d& lamp_m, const FloorRay& ray) {
-    if (!ray.sees_floor()) return Eigen::Vector3d::Zero();
-    return ray.down * (ray.origin_m - lamp_m) + ray.height_m * ray.direction;
+template <typename T>
+[[nodiscard]] Vector3<T> towards(const Eigen::Vector3d& lamp_m, const BasicFloorRay<T>& ray) {
+    if (!ray.sees_floor()) return Vector3<T>::Zero();
+    return ray.down * (ray.origin_m - lamp_m).template cast<T>() +
+           ray.height_m * ray.direction.template cast<T>();
 }
 
 }  // namespace aphotic

@@ -37,6 +37,21 @@ double longest_step_m(double m_1, double m_4, double error) {
 
 }  // namespace
 
+SpectralSum spectral_sum(const Water& water,
+                         std::span<const WeightedWavelength> grid,
+                         const LightOf& light) {
+    const auto count = static_cast<Eigen::Index>(grid.size());
+    SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
+        sum.K_per_m(i) = water.attenuation_per_m(node.lambda_nm);
+        const double value = light(node.lambda_nm);
+        for (Eigen::Index c = 0; c < kChannels; ++c)
+            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
+    }
+    return sum;
+}
+
 PathSteps path_steps(const SpectralSum& sum, const PathRange& paths, double error) {
     // Scaled by the least loss, for of long paths nothing else would be left.
     const double K_0_per_m = sum.K_per_m.minCoeff();
@@ -76,6 +91,23 @@ std::vector<float> path_table(const SpectralSum& sum, const PathSteps& steps) {
         slope = next_slope;
     }
     return table;
+}
+
+PathSignal signal_at(const std::vector<float>& table, const PathSteps& steps, double path_m) {
+    const double place = (path_m - steps.first_m) * steps.steps_per_m;
+    const int step = std::clamp(static_cast<int>(place), 0, steps.count - 1);
+    const double t = place - step;
+    const float* const cubic = &table[static_cast<std::size_t>(step) * kTableStride];
+    PathSignal signal;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::array<double, kTableOrder> a{cubic[c],
+                                                cubic[c + kTableLanes],
+                                                cubic[c + 2 * kTableLanes],
+                                                cubic[c + 3 * kTableLanes]};
+        signal.value[c] = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
+        signal.slope[c] = steps.steps_per_m * (a[1] + t * (2.0 * a[2] + t * 3.0 * a[3]));
+    }
+    return signal;
 }
 
 }  // namespace aphotic

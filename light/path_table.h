@@ -19,11 +19,16 @@
 #pragma once
 
 #include "light/path_range.h"
+#include "rig/rig.h"
+#include "spectral/bands.h"
 #include "spectral/sensor.h"
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -33,6 +38,12 @@ struct SpectralSum {
     Eigen::ArrayXd K_per_m;   // by node
     Eigen::ArrayXXd weights;  // by node and channel
 };
+
+// Over the wavelengths of a grid, of a lamp's light.
+using LightOf = std::function<double(double lambda_nm)>;
+[[nodiscard]] SpectralSum spectral_sum(const Water& water,
+                                       std::span<const WeightedWavelength> grid,
+                                       const LightOf& light);
 
 struct PathSteps {
     double first_m = 0.0;
@@ -51,5 +62,14 @@ inline constexpr std::size_t kTableStride = kTableLanes * kTableOrder;
 
 // Weights of either sign.
 [[nodiscard]] std::vector<float> path_table(const SpectralSum& sum, const PathSteps& steps);
+
+// T and T' [1/m] of each channel; beyond either end, those of the cubic there.
+struct PathSignal {
+    std::array<double, kChannels> value{};
+    std::array<double, kChannels> slope{};
+};
+[[nodiscard]] PathSignal signal_at(const std::vector<float>& table,
+                                   const PathSteps& steps,
+                                   double path_m);
 
 }  // namespace aphotic

@@ -50,7 +50,7 @@ LampSignal signal_of(const Rig& rig,
     LampSignal signal;
     for (std::size_t j = 0; j < nodes_nm.size(); ++j) {
         const auto tabulate = [&](const LightOf& light) {
-            return path_table(spectral_sum(rig,
+            return path_table(spectral_sum(rig.water,
                                            grid,
                                            [&](double nm) {
                                                return index_share(rig, nodes_nm, j, nm) * light(nm);
@@ -61,25 +61,13 @@ LampSignal signal_of(const Rig& rig,
         if (has_highlight) signal.highlight.push_back(tabulate(lights.highlight));
     }
     if (!rig.camera.port) return signal;
-    signal.dispersed_diffuse = spectral_sum(rig, dispersed, lights.diffuse);
-    if (has_highlight) signal.dispersed_highlight = spectral_sum(rig, dispersed, lights.highlight);
+    signal.dispersed_diffuse = spectral_sum(rig.water, dispersed, lights.diffuse);
+    if (has_highlight)
+        signal.dispersed_highlight = spectral_sum(rig.water, dispersed, lights.highlight);
     return signal;
 }
 
 }  // namespace
-
-SpectralSum spectral_sum(const Rig& rig, const Grid& grid, const LightOf& light) {
-    const auto count = static_cast<Eigen::Index>(grid.size());
-    SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
-        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
-        const double value = light(node.lambda_nm);
-        for (Eigen::Index c = 0; c < kChannels; ++c)
-            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
-    }
-    return sum;
-}
 
 std::vector<const Spectrum*> lamps_of(const Rig& rig, std::vector<std::size_t>& by_strobe) {
     std::vector<const Spectrum*> lamps;
@@ -122,7 +110,8 @@ SignalTable signal_table(const Rig& rig, const PathRange& paths, double error) {
     }
     const double table_error = kTableShare * error / (rig.camera.port ? kLebesgue : 1.0);
     const auto take_in = [&](const LightOf& light) {
-        const PathSteps steps = path_steps(spectral_sum(rig, grid, light), paths, table_error);
+        const PathSteps steps =
+            path_steps(spectral_sum(rig.water, grid, light), paths, table_error);
         if (steps.count > table.steps.count) table.steps = steps;
     };
     for (const Spectrum* lamp : lamps) {

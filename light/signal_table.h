@@ -16,7 +16,6 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace aphotic {
@@ -45,12 +44,6 @@ struct SignalTable {
 
 // error: relative, of the spectral integral and of the table. Without paths there is no light.
 [[nodiscard]] SignalTable signal_table(const Rig& rig, const PathRange& paths, double error);
-
-// A lamp's light as a water's path takes it: by wavelength of the grid, light and loss.
-using LightOf = std::function<double(double lambda_nm)>;
-[[nodiscard]] SpectralSum spectral_sum(const Rig& rig,
-                                       const std::vector<WeightedWavelength>& grid,
-                                       const LightOf& light);
 
 // The lamp spectra, each once, and which of them each strobe has.
 [[nodiscard]] std::vector<const Spectrum*> lamps_of(const Rig& rig,

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kLast = kTilePoints - 1;
 
+}  // namespace
+
 double chebyshev_point(int i) {
     static const auto kPoints = [] {
         std::array<double, kTilePoints> points{};
@@ -20,8 +22,8 @@ double chebyshev_point(int i) {
     return kPoints[static_cast<std::size_t>(i)];
 }
 
-// l_i at x, by the barycentric formula.
-std::array<double, kTilePoints> lagrange_at(double x) {
+// By the barycentric formula.
+std::array<double, kTilePoints> chebyshev_shares(double x) {
     std::array<double, kTilePoints> shares{};
     double sum = 0.0;
     for (int i = 0; i <= kLast; ++i) {
@@ -40,6 +42,8 @@ std::array<double, kTilePoints> lagrange_at(double x) {
     return shares;
 }
 
+namespace {
+
 TileAxis axis_of(int pixels) {
     TileAxis axis;
     const double half_px = 0.5 * (pixels - 1);
@@ -48,13 +52,13 @@ TileAxis axis_of(int pixels) {
     for (int gap = 0; gap < kTileGaps; ++gap) {
         const double x = 0.5 * (chebyshev_point(gap) + chebyshev_point(gap + 1));
         axis.gaps_px[static_cast<std::size_t>(gap)] = half_px * (1.0 + x);
-        const auto shares = lagrange_at(x);
+        const auto shares = chebyshev_shares(x);
         for (int i = 0; i < kTilePoints; ++i)
             axis.to_gaps(gap, i) = shares[static_cast<std::size_t>(i)];
     }
     axis.to_pixels.resize(pixels, kTilePoints);
     for (int pixel = 0; pixel < pixels; ++pixel) {
-        const auto shares = lagrange_at(pixels > 1 ? pixel / half_px - 1.0 : 0.0);
+        const auto shares = chebyshev_shares(pixels > 1 ? pixel / half_px - 1.0 : 0.0);
         for (int i = 0; i < kTilePoints; ++i)
             axis.to_pixels(pixel, i) = static_cast<float>(shares[static_cast<std::size_t>(i)]);
     }

@@ -38,6 +38,10 @@ inline constexpr int kTilePixels = 256;  // along a side, at most
 
 using TileNodes = Eigen::Matrix<double, kTilePoints, kTilePoints>;  // (row, column)
 
+// From -1 to 1, and l_i at x.
+[[nodiscard]] double chebyshev_point(int i);
+[[nodiscard]] std::array<double, kTilePoints> chebyshev_shares(double x);
+
 // One way across a tile of so many pixels. Places are pixels from the first one's centre.
 struct TileAxis {
     std::array<double, kTilePoints> points_px{};

@@ -118,12 +118,12 @@ void VeilMap::tabulate(const PathRange& paths, double error) {
     };
     for_each_table([&](const VeilGrid& grid, const LightOf& light) {
         const PathSteps steps =
-            path_steps(spectral_sum(rig_, grid, light), paths, kVeilTableShare * error);
+            path_steps(spectral_sum(rig_.water, grid, light), paths, kVeilTableShare * error);
         if (steps.count > steps_.count) steps_ = steps;
     });
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         for_each_table([&](const VeilGrid& grid, const LightOf& light) {
-            const SpectralSum sum = spectral_sum(rig_, grid, [&](double nm) {
+            const SpectralSum sum = spectral_sum(rig_.water, grid, [&](double nm) {
                 return index_share(rig_, index_nodes_nm_, j, nm) * light(nm);
             });
             tables_.push_back(path_table(sum, steps_));

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -23,8 +24,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -225,6 +228,14 @@ FitBeamKind beam_named(const std::string& name) {
     throw InputError("beam: found {}; allowed: table, cones, cosine, optics", name);
 }
 
+std::optional<bool> is_radial(const std::optional<std::string>& vignetting) {
+    if (!vignetting) return std::nullopt;
+    if (*vignetting == "cosine" || *vignetting == "radial") return *vignetting == "radial";
+    throw InputError("vignetting: found {}; allowed: cosine, radial", *vignetting);
+}
+
+using Words = std::vector<std::string>;
+
 FitSamples image_samples(const Rig& rig,
                          const std::vector<std::string>& images,
                          const fs::path& navigation,
@@ -247,8 +258,11 @@ Fitted fit_rig(const TextRig& rig,
                std::optional<float> black_level,
                std::optional<float> white_level,
                const std::string& beam,
-               std::optional<std::size_t> parts,
-               const std::optional<std::vector<std::string>>& free,
+               bool beam_each,
+               const std::optional<Words>& free,
+               const Words& hold,
+               const std::map<std::string, double>& priors,
+               const std::optional<std::string>& vignetting,
                double altitude_error_m,
                double attitude_error_deg,
                int blocks,
@@ -259,14 +273,17 @@ Fitted fit_rig(const TextRig& rig,
     }
     if (!images.empty() && !navigation)
         throw InputError("images: found no navigation; allowed: with nav");
-    if (parts) require_range("parts", static_cast<double>(*parts), 4, 200);
     require_range("blocks", blocks, 8, 1000);
     const FitOptions options{.beam = beam_named(beam),
-                             .parts = parts,
+                             .has_beam_each = beam_each,
+                             .has_radial_vignetting = is_radial(vignetting),
                              .free = free,
+                             .hold = hold,
+                             .priors = priors,
                              .altitude_error_m = altitude_error_m,
                              .attitude_error_rad = attitude_error_deg * kRadiansPerDegree,
                              .threads = threads_of(threads)};
+    require_fit_options(rig.text, options);
     CameraNumbers camera{.black_level = black_level, .white_level = white_level};
     if (bayer) camera.mosaic = mosaic_of(*bayer);
     Fitted fitted = [&]() -> Fitted {
@@ -293,9 +310,10 @@ TextRig save_fit(const Fitted& fitted, const fs::path& folder) {
     return TextRig(RigText(folder / kFittedRig));
 }
 
-std::vector<std::string> words_of_held(const Fitted& fitted) {
-    std::vector<std::string> words;
-    for (const NotTold& one : fitted.result.held) words.push_back(words_of(one));
+Words not_determined(const Fitted& fitted) {
+    Words words;
+    for (const FittedNumber& one : fitted.result.numbers)
+        if (!one.is_determined) words.push_back(words_of(one));
     return words;
 }
 
@@ -319,13 +337,19 @@ void bind_fit(nb::module_& module) {
         .def_ro("start", &FittedNumber::start)
         .def_ro("value", &FittedNumber::value)
         .def_ro("error", &FittedNumber::error)
-        .def_ro("is_at_bound", &FittedNumber::is_at_bound);
+        .def_ro("prior", &FittedNumber::spread, "What it may be off by beforehand.")
+        .def_ro("is_determined", &FittedNumber::is_determined);
     nb::class_<Fitted>(module, "Fit", "The rig that explains a survey.")
         .def_prop_ro("numbers", [](const Fitted& fitted) { return fitted.result.numbers; })
-        .def_prop_ro("held", words_of_held, "What the images cannot tell, and why.")
+        .def_prop_ro("not_determined",
+                     not_determined,
+                     "What the survey does not tell, and which altitude would.")
+        .def_prop_ro(
+            "unevenness",
+            [](const Fitted& fitted) { return fitted.result.unevenness; },
+            "Expected of a correction by this rig over the survey's poses, rms.")
         .def_prop_ro("skipped", pairs_skipped, "Images that could not be used, and why.")
         .def_prop_ro("looks_wrong", pairs_wrong, "What looks wrong, and why.")
-        .def_prop_ro("residual", [](const Fitted& fitted) { return fitted.result.left.residual; })
         .def_prop_ro(
             "json",
             [](const Fitted& fitted) { return json_text(to_json(fitted.result)); },
@@ -345,8 +369,11 @@ void bind_fit(nb::module_& module) {
                nb::arg("black_level") = nb::none(),
                nb::arg("white_level") = nb::none(),
                nb::arg("beam") = "table",
-               nb::arg("parts") = nb::none(),
+               nb::arg("beam_each") = false,
                nb::arg("free") = nb::none(),
+               nb::arg("hold") = Words(),
+               nb::arg("priors") = std::map<std::string, double>(),
+               nb::arg("vignetting") = nb::none(),
                nb::arg("altitude_error_m") = 0.02,
                nb::arg("attitude_error_deg") = 0.5,
                nb::arg("blocks") = kBlocksAcross,

@@ -112,8 +112,9 @@ double traced_vignetting(const Camera& camera,
                              (table->angles_rad[row_of + 1] - from_rad);
         return table->factors[row_of] + slope * (angle_rad - from_rad);
     }
-    // cos^4 = 1 / (1 + tan^2)^2
-    return static_cast<double>(1.0L / ((1.0L + tangent_squared) * (1.0L + tangent_squared)));
+    // cos^n = (1 + tan^2)^(-n/2)
+    const long double n = std::get<NaturalVignetting>(*camera.vignetting).exponent;
+    return static_cast<double>(std::pow(1.0L + tangent_squared, -n / 2.0L));
 }
 
 }  // namespace aphotic

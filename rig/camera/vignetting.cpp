@@ -25,9 +25,11 @@ double angle_in_air_rad(const Camera& camera, double column, double row) {
     return std::atan2(direction.head<2>().norm(), direction.z());
 }
 
-double factor(const NaturalVignetting&, const Camera& camera, double column, double row) {
+double factor(const NaturalVignetting& natural, const Camera& camera, double column, double row) {
     const double cosine = direction_in_air(camera, column, row).z();
-    return cosine * cosine * cosine * cosine;
+    // The squares of what is nearly always asked for, and for other lenses a power.
+    if (natural.exponent == 4.0) return cosine * cosine * cosine * cosine;
+    return std::pow(std::max(cosine, 0.0), natural.exponent);
 }
 
 double factor(const RadialVignetting& radial, const Camera& camera, double column, double row) {
@@ -150,7 +152,8 @@ std::string vignetting_signature(const Vignetting& vignetting) {
         return fmt::format(
             "table {} at {}", fmt::join(table->factors, " "), fmt::join(table->angles_rad, " "));
     }
-    return "natural";
+    const double exponent = std::get<NaturalVignetting>(vignetting).exponent;
+    return exponent == 4.0 ? "natural" : fmt::format("cosine {}", exponent);
 }
 
 }  // namespace aphotic

@@ -3,7 +3,7 @@
 // What a lens takes off the light towards the image's corners: the factor V of every pixel's
 // signal, one for all wavelengths.
 //
-//   Natural     V = cos^4 theta                       theta: the pixel's angle off the axis in air
+//   Natural     V = cos^n theta, n = 4 by default     theta: the pixel's angle off the axis in air
 //   Radial      V = 1 + a1 p^2 + a2 p^4 + a3 p^6      p: distance from the principal point, of half
 //                                                     the image's diagonal 1
 //   Tabulated   V over theta, straight lines between rows
@@ -23,6 +23,8 @@ namespace aphotic {
 struct Camera;
 
 struct NaturalVignetting {
+    double exponent = 4.0;  // n
+
     bool operator==(const NaturalVignetting&) const = default;
 };
 

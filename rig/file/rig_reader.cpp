@@ -56,6 +56,7 @@ constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kFovDeg{0.01, 175.0};
 constexpr Bounds kVignettingTerm{-1e3, 1e3};
 constexpr Bounds kScale{kLeastScale, 1.0};
+constexpr Bounds kVignettingCosine{0.0, 50.0};
 constexpr Bounds kLevelDn{0.0, 1e9};
 constexpr Bounds kExposureMs{1e-4, 1e6};
 constexpr Bounds kIso{0.1, 1e7};
@@ -279,7 +280,8 @@ TabulatedVignetting read_vignetting_table(Section& section, RigFiles& files) {
 
 void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
     const std::string allowed =
-        "\"natural\" (cos^4), { radial = [a1, a2, a3] } or { table = \"vignetting.csv\" }";
+        "\"natural\" (cos^4), { cosine = 3.5 }, { radial = [a1, a2, a3] } or "
+        "{ table = \"vignetting.csv\" }";
     if (!camera_section.required("vignetting", allowed).is_table()) {
         if (camera_section.text("vignetting", allowed) != "natural")
             camera_section.found_but("vignetting", allowed);
@@ -287,8 +289,10 @@ void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
         return;
     }
     Section section = camera_section.section("vignetting", allowed);
-    section.refuse_both({"radial", "table"});
-    if (section.has("radial")) {
+    section.refuse_both({"cosine", "radial", "table"});
+    if (section.has("cosine")) {
+        camera.vignetting = NaturalVignetting{section.number("cosine", kVignettingCosine)};
+    } else if (section.has("radial")) {
         camera.vignetting = RadialVignetting{section.numbers<3>("radial", kVignettingTerm)};
     } else {
         camera.vignetting = read_vignetting_table(section, files);

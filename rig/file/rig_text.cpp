@@ -271,6 +271,12 @@ std::optional<double> RigText::number(std::string_view key) const {
     return node == nullptr ? std::nullopt : node->value<double>();
 }
 
+std::optional<std::string> RigText::word(std::string_view key) const {
+    const toml::table root = toml::parse(text_);
+    const toml::node* node = find(root, key);
+    return node == nullptr ? std::nullopt : node->value<std::string>();
+}
+
 void RigText::put(std::string_view key, const std::string& value) {
     const toml::table root = toml::parse(text_);
     const TextPlaces places(text_);

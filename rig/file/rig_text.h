@@ -27,8 +27,9 @@ class RigText {
     RigText(std::string_view toml, std::string name, std::filesystem::path folder);
 
     [[nodiscard]] bool has(std::string_view key) const;
-    // None where the key is not there or no number.
+    // None where the key is not there or of another kind.
     [[nodiscard]] std::optional<double> number(std::string_view key) const;
+    [[nodiscard]] std::optional<std::string> word(std::string_view key) const;
 
     // Makes the tables on the way to it. An InputError where there is no such strobe or object, or
     // what should be a table is none.

@@ -4,20 +4,19 @@
 #include "base/error.h"
 #include "base/words.h"
 #include "survey/fit/fit_check.h"
-#include "survey/fit/fit_halves.h"
-#include "survey/fit/fit_parts.h"
-#include "survey/fit/fit_search.h"
+#include "survey/fit/fit_errors.h"
+#include "survey/fit/fit_objective.h"
+#include "survey/fit/fit_pattern.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
+#include <map>
+#include <set>
 
 namespace aphotic {
 namespace {
@@ -26,210 +25,204 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Fewer images cannot be halved, nor tell how many parts a beam has.
-constexpr std::size_t kFewImages = 10;
+constexpr double kNear = 0.2;  // of a number's error
+constexpr double kNearest = 0.05;
+constexpr double kFirstShare = 0.3;  // of the time
 
-// What looks wrong by the light of the rig, before minutes go into it.
-void look_before(const FitBench& bench,
-                 const FitProblem& problem,
-                 const FitSamples& samples,
-                 const RunWatch& watch,
-                 std::vector<Suspicion>& found) {
-    const auto [light, shares] = lit_by(bench, problem);
-    const auto mistake = mistaken_input(samples, bench.light, problem.state, light, shares);
-    if (!mistake) return;
-    watch.looks_wrong({*mistake});
-    found.push_back(*mistake);
-}
-
-// In blocks as coarse as tell the same, unless beams have edges.
-FitSamples coarse_of(const FitSamples& samples, const FitState& state) {
-    constexpr int kBlocksAcross = 20;
-    const bool has_edges = std::ranges::count(state.beams, FitBeamKind::Cones, &FitBeam::kind) > 0;
-    return has_edges ? samples : in_blocks(samples, kBlocksAcross);
-}
-
-// A search on some of the images: from the rig, or on from an answer.
-struct HalfSearch {
-    HalfSearch(const RigText& text,
-               const FitSamples& samples,
-               const FitOptions& options,
-               const FitProblem& answer,
-               bool is_from_rig)
-        : bench(text, samples, options.threads), problem(answer) {
-        const EffectVariances first = first_effects(options, samples.are_maps);
-        const auto silently = [](double) {};
-        if (is_from_rig) {
-            problem.state = answer.at(answer.start().data());
-            search_in_rounds(bench, problem, first, silently);
-        } else {
-            bench.equations.assume_noise();
-            search_on(bench, problem, first, silently);
-        }
-        values = values_of(lit_by(bench, problem).shares, problem);
-    }
-    FitBench bench;
-    FitProblem problem;
-    VectorXd values;
-};
-
-// What a half of the images gives, from the rig. Where that is far from the answer to all, beyond
-// kFar of its errors, the search may have ended in a valley that the half itself surely does not
-// prefer: then it is what comes of the answer. Sure is four standard deviations, for S is a square.
-// Less may be texture's doing: to twenty images of a rough floor an answer whose aim was 3.4
-// degrees off was 14 better than another.
-VectorXd values_of_half(std::size_t half,
-                        const RigText& text,
-                        const FitSamples& samples,
-                        const FitOptions& options,
-                        const FitProblem& answer,
-                        const VectorXd& errors) {
-    constexpr double kFar = 3.0;
-    constexpr double kSurely = 16.0;
-    FitSamples some = samples;
-    some.images.clear();
+FitSamples half_of(FitSamples samples, std::size_t split, std::size_t which) {
+    std::vector<FitImage> images;
     for (std::size_t i = 0; i < samples.images.size(); ++i)
-        if (is_in_half(i, half)) some.images.push_back(samples.images[i]);
-    HalfSearch by_rig(text, some, options, answer, true);
-    const VectorXd off =
-        (by_rig.problem.now() - answer.now()).cwiseProduct(answer.plausible()).cwiseAbs();
-    if ((off.array() < kFar * errors.array()).all()) return by_rig.values;
-    HalfSearch by_answer(text, some, options, answer, false);
-    learn_to_compare(by_rig.bench, by_rig.problem);
-    learn_to_compare(by_answer.bench, by_answer.problem);
-    const double excess_of_rig =
-        excess(by_rig.bench, by_rig.problem, by_answer.bench, by_answer.problem);
-    return excess_of_rig > kSurely ? by_answer.values : by_rig.values;
+        if ((i >> split) % 2 == which) images.push_back(std::move(samples.images[i]));
+    samples.images = std::move(images);
+    return samples;
 }
 
-// Of a variance by kHalves: by chance it is so many times the true one or more in a twentieth of
-// all cases; and Student's t over the normal's, squared.
-constexpr double kBeyondChance = 1.67;
-constexpr double kStudent2 = 1.18;
+// Edges are found from as far away as they are soft, and aims may be some degrees off: where blocks
+// are finer, a search begins with softer ones.
+VectorXd start_of(const FitObjective& objective,
+                  const RigText& text,
+                  const FitSamples& samples,
+                  const FitOptions& options,
+                  const FitLight& light,
+                  double widest_rad) {
+    constexpr double kSoft_rad = 0.1;
+    if (options.beam != FitBeamKind::Cones || light.block_rad() > kSoft_rad)
+        return objective.first_point().x;
+    const FitProblem problem = fit_problem(text, options, widest_rad, kSoft_rad);
+    const FitObjective softer(text, samples, options, light, problem);
+    return softer.search(softer.first_point(), kNear, [](int) {}).x;
+}
 
-// The covariance, with the halves' variances where these are larger by more than chance.
-void widen(const VectorXd& by_halves, MatrixXd& covariance) {
-    VectorXd factor = VectorXd::Ones(by_halves.size());
-    for (Index k = 0; k < by_halves.size(); ++k) {
-        const double own = covariance(k, k);
-        if (own > 0.0 && by_halves(k) > kBeyondChance * own)
-            factor(k) = std::sqrt(kStudent2 * by_halves(k) / own);
+// Where as many images again would bring most, level flight at another altitude.
+std::optional<FlyAt> fly_at(const FitObjective& objective,
+                            const FitPoint& point,
+                            const FitSamples& samples,
+                            Index number,
+                            double error) {
+    constexpr std::array kAltitudes{0.5, 0.7, 1.4, 2.0};  // of the mean
+    constexpr double kHelps = 0.7;
+    double altitude_m = 0.0;
+    for (const FitImage& image : samples.images)
+        altitude_m += image.sled.altitude_m / static_cast<double>(samples.images.size());
+    const MatrixXd A = objective.curvature_of(objective.terms_at(point, Curvature::Majorant));
+    const auto error_of = [&](const MatrixXd& information) {
+        return std::sqrt(information.ldlt().solve(VectorXd::Unit(A.rows(), number))(number));
+    };
+    const double now = error_of(A);
+    std::optional<FlyAt> best;
+    double least = kHelps * now;
+    for (const double times : kAltitudes) {
+        const double there_m = times * altitude_m;
+        const double then =
+            error_of(A + static_cast<double>(samples.images.size()) *
+                             objective.information_at(point, {.altitude_m = there_m}));
+        if (!(then < least)) continue;
+        least = then;
+        best = FlyAt{.altitude_m = there_m, .error = error * then / now};
     }
-    covariance = factor.asDiagonal() * covariance * factor.asDiagonal();
+    return best;
 }
 
-// The beam scaled to a flux of 1, by its flux as fitted: where nobody looks that is told badly, and
-// the shape elsewhere is none the worse for it. Errors are those of the shares and the exponent.
-std::vector<BeamPoint> curve_of(const FitBeam& beam,
-                                const VectorXd& shares,
-                                const MatrixXd& covariance) {
+// The beam scaled to a flux of 1. Errors are those of its logarithm.
+std::vector<BeamPoint> curve_of(const FitBeam& beam, const MatrixXd& covariance) {
     constexpr int kPoints = 91;
-    const double flux = beam.beam_of(shares).flux;
+    const double flux = beam.fitted().flux;
+    const double widest_rad = std::min(beam.widest_rad(), 1.57);
     std::vector<BeamPoint> points;
+    BeamValue value;
     for (int i = 0; i < kPoints; ++i) {
-        const double theta_rad = std::min(beam.widest_rad(), beam.widest_rad() * i / (kPoints - 1));
-        const VectorXd f = beam.parts_at(theta_rad);
-        VectorXd slopes(covariance.rows());
-        slopes.head(shares.size()) = f / flux;
-        for (std::size_t k = 0; k < beam.shapes().size(); ++k)
-            slopes(shares.size() + static_cast<Index>(k)) =
-                beam.slopes_at(theta_rad).at(k) * shares(0) / flux;
-        points.push_back({.theta_rad = theta_rad,
-                          .intensity = f.dot(shares) / flux,
-                          .error = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes)))});
+        const double theta_rad = widest_rad * i / (kPoints - 1);
+        beam.at({std::sin(theta_rad), 0.0, std::cos(theta_rad)}, value);
+        VectorXd slopes = VectorXd::Zero(covariance.rows());
+        slopes.segment(static_cast<Index>(value.first), std::ssize(value.by)) =
+            VectorXd::Map(value.by.data(), std::ssize(value.by));
+        points.push_back(
+            {.theta_rad = theta_rad,
+             .intensity = value.intensity / flux,
+             .error = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes))) / flux});
     }
     return points;
 }
 
-// Where the beam's shares and shapes stand in the covariance.
-std::vector<Index> rows_of_beam(const FitResult& result, std::size_t beam) {
+std::vector<Confounded> confounded_in(const FitProblem& problem, const MatrixXd& covariance) {
+    constexpr double kMuch = 0.9;
+    std::vector<Confounded> found;
+    for (std::size_t i = 0; i < problem.numbers.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const auto a = static_cast<Index>(i);
+            const auto b = static_cast<Index>(j);
+            const bool is_curve = problem.numbers[i].at.part == FitPart::Beam ||
+                                  problem.numbers[j].at.part == FitPart::Beam;
+            const double correlation =
+                covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+            if (!is_curve && std::abs(correlation) > kMuch)
+                found.push_back({problem.numbers[j].key, problem.numbers[i].key, correlation});
+        }
+    }
+    std::ranges::sort(found, [](const Confounded& a, const Confounded& b) {
+        return std::abs(a.correlation) > std::abs(b.correlation);
+    });
+    return found;
+}
+
+// Observed and fitted, of the lowest image, a middle one, and the highest.
+std::vector<FitView> views_of(const FitObjective& objective,
+                              const FitPoint& point,
+                              const FitSamples& samples) {
+    const FitState state = objective.state_at(point);
+    const PathLight light = objective.path_light(state);
+    std::vector<std::size_t> order(samples.images.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, {}, [&](std::size_t i) { return samples.images[i].sled.altitude_m; });
+    std::vector<FitView> views;
+    const std::size_t wanted = std::min(kFitViews, order.size());
+    const auto mu = point.x.tail(static_cast<Index>(objective.channels()));
+    for (std::size_t k = 0; k < wanted; ++k) {
+        const std::size_t image = order[wanted == 1 ? 0 : k * (order.size() - 1) / (wanted - 1)];
+        const ImageView seen = objective.view(point, state, light, image);
+        FitView view{.image = image, .observed = {}, .fitted = {}};
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const std::size_t of = std::min(c, objective.channels() - 1);
+            for (std::size_t place = 0; place < samples.places.size(); ++place) {
+                const std::size_t at = place * kChannels + of;
+                view.observed.push_back(samples.images[image].signal[at]);
+                view.fitted.push_back(static_cast<float>(
+                    std::exp(seen.light.logarithm(static_cast<Index>(at)) +
+                             mu(static_cast<Index>(of)) + seen.level(static_cast<Index>(of)))));
+            }
+        }
+        views.push_back(std::move(view));
+    }
+    return views;
+}
+
+void add_outcomes(const FitObjective& objective,
+                  const FitPoint& point,
+                  const FitSamples& samples,
+                  FitResult& result) {
+    const FitState state = objective.state_at(point);
+    const PathLight light = objective.path_light(state);
+    const auto green = static_cast<Index>(objective.channels() > 1 ? 1 : 0);
+    double veil = 0.0;
+    double rows = 0.0;
+    for (std::size_t i = 0; i < samples.images.size(); ++i) {
+        const ImageView seen = objective.view(point, state, light, i);
+        result.blocks += seen.blocks;
+        result.images.push_back({.name = samples.images[i].name,
+                                 .sled = samples.images[i].sled,
+                                 .off = point.pose[i],
+                                 .brightness = seen.level(green)});
+        for (const double share : seen.light.floor_share) {
+            if (!std::isfinite(share)) continue;
+            veil += 1.0 - share;
+            rows += 1.0;
+        }
+    }
+    result.veil_share = veil / std::max(rows, 1.0);
+    result.texture = std::sqrt(point.texture.details.front()(green, green));
+    result.level_spread = std::sqrt(point.texture.level(green, green));
+}
+
+// In the keys' units, of the numbers.
+void add_numbers(const FitProblem& problem,
+                 const FitObjective& objective,
+                 const FitPoint& point,
+                 const FitSamples& samples,
+                 const MatrixXd& told,
+                 FitResult& result) {
+    VectorXd units(told.rows());
+    for (Index k = 0; k < told.rows(); ++k) {
+        const FitNumber& number = problem.numbers[static_cast<std::size_t>(k)];
+        units(k) = number.shown_slope(point.x(k));
+        const double error = std::sqrt(told(k, k));
+        const bool is_of_curve = number.at.part == FitPart::Beam && !number.is_shown_exp;
+        FittedNumber one{.key = number.key,
+                         .word = number.word,
+                         .start = number.shown(0.0),
+                         .value = number.shown(point.x(k)),
+                         .error = units(k) * error,
+                         .spread = units(k) * number.spread,
+                         .is_determined = is_of_curve || error < kDetermined * number.spread};
+        if (!one.is_determined) one.fly_at = fly_at(objective, point, samples, k, one.error);
+        result.numbers.push_back(std::move(one));
+    }
+    result.covariance = units.asDiagonal() * told * units.asDiagonal();
+    result.confounded = confounded_in(problem, told);
     Index first = 0;
-    for (std::size_t b = 0; b < beam; ++b)
-        first += static_cast<Index>(result.state.beams[b].parts());
-    std::vector<Index> rows;
-    for (std::size_t k = 0; k < result.state.beams[beam].parts(); ++k)
-        rows.push_back(first + static_cast<Index>(k));
-    for (std::size_t k = 0; k < result.numbers.size(); ++k) {
-        const FitNumber& number = result.numbers[k].number;
-        if (number.part == FitPart::BeamShape && number.of == beam)
-            rows.push_back(result.shares.size() + static_cast<Index>(k));
+    for (const FitBeam& beam : result.state.beams) {
+        const auto size = std::ssize(beam.coefficients());
+        if (beam.is_round())
+            result.beam_curves.push_back(curve_of(beam, told.block(first, first, size, size)));
+        first += size;
     }
-    return rows;
 }
 
-// Those that are held may be off as far as is plausible, and all others with them.
-MatrixXd covariance_with(const std::vector<FreeNumber>& held,
-                         const FitBench& bench,
-                         const FitProblem& problem,
-                         const Linearised& at) {
-    if (held.empty()) return covariance_of(at.normal, at.shares, problem.free);
-    FitProblem all = problem;
-    all.free.insert(all.free.end(), held.begin(), held.end());
-    const FitEquations::Normal normal =
-        bench.equations.normal(problem.state, at.light, at.shares, all.numbers(), true);
-    const Index told = at.shares.size() + std::ssize(problem.free);
-    return covariance_of(normal, at.shares, all.free).topLeftCorner(told, told);
-}
-
-FitResult result_of(const FitBench& bench,
-                    const FitProblem& problem,
-                    const FitSamples& samples,
-                    const Linearised& at,
-                    const MatrixXd& covariance) {
-    FitResult result;
-    result.state = problem.state;
-    result.shares = at.shares;
-    result.covariance = covariance;
-    result.effects = bench.equations.effects();
-    result.noise = bench.equations.noise();
-    result.blocks = bench.equations.blocks();
-    result.tiles = at.normal.tiles;
-    result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
-    result.are_maps = samples.are_maps;
-    result.block_px = samples.places.block_px;
-    const Index parts = result.shares.size();
-    for (std::size_t k = 0; k < problem.free.size(); ++k) {
-        const FreeNumber& one = problem.free[k];
-        const Index at_number = parts + static_cast<Index>(k);
-        const double value = number_in(result.state, one.number);
-        result.numbers.push_back(
-            {.number = one.number,
-             .key = one.key,
-             .start = one.start * one.per_unit,
-             .value = value * one.per_unit,
-             .error = one.per_unit * std::sqrt(result.covariance(at_number, at_number)),
-             .plausible = one.per_unit * one.plausible,
-             .per_unit = one.per_unit,
-             .is_at_bound = value <= one.least || value >= one.most});
-    }
-    result.confounded = confounded_in(result.covariance, parts, problem.free);
-    for (std::size_t b = 0; b < result.state.beams.size(); ++b) {
-        const FitBeam& beam = result.state.beams[b];
-        if (!beam.is_round()) continue;
-        const std::vector<Index> rows = rows_of_beam(result, b);
-        const auto count = static_cast<Index>(beam.parts());
-        result.beam_curves.push_back(curve_of(
-            beam, result.shares.segment(rows.front(), count), result.covariance(rows, rows)));
-    }
-    return result;
-}
-
-// Held at the rig's, or where they were asked for, refused.
-void hold(const std::vector<NotTold>& untold,
-          const FitOptions& options,
-          FitProblem& problem,
-          std::vector<FreeNumber>& held) {
-    if (options.free) {
-        std::vector<std::string> words;
-        for (const NotTold& one : untold) words.push_back(words_of(one));
-        throw InputError("--free: {}", fmt::join(words, "; "));
-    }
-    for (const NotTold& one : untold) {
-        const auto at = std::ranges::find(problem.free, one.key, &FreeNumber::key);
-        number_in(problem.state, at->number) = at->start;
-        held.push_back(*at);
-        problem.free.erase(at);
-    }
+std::vector<std::string> words_fixed_in(const FitProblem& problem) {
+    std::vector<std::string> fixed;
+    for (const char* word : {"beam", "aim", "power", "water", "vignetting", "floor"})
+        if (std::ranges::count(problem.numbers, word, &FitNumber::word) == 0)
+            fixed.emplace_back(word);
+    return fixed;
 }
 
 }  // namespace
@@ -244,78 +237,84 @@ void require_bare_floor(const Rig& rig) {
             "scene: found {}; allowed: none, for a survey shows the bare floor on average",
             rig.scene.string());
     if (rig.seafloor.phong > 0.0)
-        throw InputError("seafloor.phong: found {}; allowed: 0, for a fit's floor is matt",
-                         rig.seafloor.phong);
+        throw InputError("seafloor.phong: found {}; allowed: 0, a matt floor", rig.seafloor.phong);
 }
 
 FitResult fit(const RigText& text,
               const FitSamples& samples,
               const FitOptions& options,
               const RunWatch& watch) {
-    require_bare_floor(text.rig());
-    FitBench bench(text, samples, options.threads);
-    const FitAngles angles{.widest_rad = bench.light.widest_rad(bench.sleds),
-                           .block_rad = bench.light.block_rad()};
-    FitProblem problem = fit_problem(text, options, angles);
-    std::vector<std::string> fixed = words_fixed_in(problem);
-    std::vector<Suspicion> doubts = samples.looks_wrong;
-    watch.progress("fitting", 0.0);
-    bench.equations.assume_noise();
-    start_gains(bench, problem);
-    look_before(bench, problem, samples, watch, doubts);
-
-    const bool has_many = !samples.are_maps && samples.images.size() >= kFewImages;
-    const FitSamples coarse = has_many ? coarse_of(samples, problem.state) : FitSamples{};
-    const bool has_table =
-        std::ranges::count(problem.state.beams, FitBeamKind::Table, &FitBeam::kind) > 0;
-    if (has_many && has_table && !options.parts)
-        problem = with_told_parts(text, coarse, options, angles, watch);
-
-    const EffectVariances effects = first_effects(options, samples.are_maps);
-    std::vector<NotTold> all_untold;
-    std::vector<FreeNumber> held;
-    int steps = 0;
-    for (;;) {
-        steps += search_in_rounds(
-            bench, problem, effects, [&](double share) { watch.progress("fitting", share); });
-        const Linearised at = linearised_at(bench, problem);
-        const std::vector<NotTold> untold =
-            not_told(bench.equations, problem, at.light, at.normal.H, at.shares, bench.sleds);
-        if (untold.empty()) break;
-        hold(untold, options, problem, held);
-        all_untold.insert(all_untold.end(), untold.begin(), untold.end());
+    const Rig rig = text.rig();
+    require_bare_floor(rig);
+    std::vector<Sled> sleds;
+    for (const FitImage& image : samples.images) sleds.push_back(image.sled);
+    const FitLight light(rig, samples.places);
+    const double widest_rad = light.widest_rad(sleds);
+    const FitProblem problem = fit_problem(text, options, widest_rad, light.block_rad());
+    const FitObjective objective(text, samples, options, light, problem);
+    FitResult result;
+    result.looks_wrong = samples.looks_wrong;
+    if (const auto mistake = mistaken_input(samples, objective, problem, light)) {
+        watch.looks_wrong({*mistake});
+        result.looks_wrong.push_back(*mistake);
     }
-    const Linearised at = linearised_at(bench, problem);
-    MatrixXd covariance = covariance_with(held, bench, problem, at);
-    if (has_many) {
-        const VectorXd errors =
-            covariance.diagonal().tail(std::ssize(problem.free)).cwiseMax(0.0).cwiseSqrt();
-        const VectorXd by_halves = variances_by_halves([&](std::size_t half) {
-            watch.progress("fitting halves",
-                           static_cast<double>(half) / static_cast<double>(kHalves + 1));
-            return values_of_half(half, text, coarse, options, problem, errors);
+    FitPoint start = objective.first_point();
+    start.x = start_of(objective, text, samples, options, light, widest_rad);
+    FitPoint point = objective.search(start, kNear, [&](int round) {
+        result.rounds = round;
+        watch.progress("fitting", kFirstShare * round / kMostRounds);
+    });
+    point.dispersion = dispersion_at(objective, point);
+    point = objective.search(point, kNearest, [&](int round) {
+        ++result.rounds;
+        watch.progress("fitting", kFirstShare + (1.0 - kFirstShare) * round / kMostRounds);
+    });
+    const FitErrors errors =
+        errors_of(objective, problem, point, [&](std::size_t split, std::size_t which) {
+            const FitSamples some = half_of(samples, split, which);
+            const FitObjective half(text, some, options, light, problem);
+            FitPoint from = half.first_point();
+            from.x = start.x;
+            from.dispersion = point.dispersion;
+            return half.search(std::move(from), kNear, [&](int round) {
+                watch.progress("comparing halves",
+                               0.5 * (static_cast<double>(which) + 1.0 * round / kMostRounds));
+            });
         });
-        widen(by_halves, covariance);
-    }
-    FitResult result = result_of(bench, problem, samples, at, covariance);
-    watch.progress("fitting", 1.0);
-    result.held = std::move(all_untold);
-    for (const Suspicion& one : suspicions(samples, result)) doubts.push_back(one);
-    result.looks_wrong.insert(result.looks_wrong.begin(), doubts.begin(), doubts.end());
-    result.fixed = std::move(fixed);
-    result.rounds = static_cast<int>(kRobustRounds.size()) + 1;
-    result.steps = steps;
+    result.state = objective.state_at(point);
+    result.are_maps = samples.are_maps;
+    result.block_px = samples.places.block_px;
+    result.fixed = words_fixed_in(problem);
+    result.unevenness = errors.unevenness;
+    result.dispersion = point.dispersion;
+    result.pattern = pattern_of(objective, point, samples.places);
+    result.views = views_of(objective, point, samples);
+    add_outcomes(objective, point, samples, result);
+    add_numbers(problem, objective, point, samples, errors.covariance, result);
+    for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     return result;
 }
 
+bool is_curve(const FittedNumber& number) {
+    return number.key.find(".beam.ln_") != std::string::npos;
+}
+
 std::string words_of(const FitResult& result) {
-    const FitBeam& beam = result.state.beams.front();
-    return fmt::format("{}{} fitted to {}",
-                       counted(result.numbers.size(), "number"),
-                       beam.kind() == FitBeamKind::Table
-                           ? fmt::format(" and a beam of {} splines", beam.parts())
-                           : "",
-                       counted(result.left.images.size(), result.are_maps ? "map" : "image"));
+    const auto splines = static_cast<std::size_t>(std::ranges::count_if(result.numbers, is_curve));
+    std::string words = counted(result.numbers.size() - splines, "number");
+    if (splines > 0) words += fmt::format(" and a beam of {} splines", splines);
+    return words + fmt::format(" fitted to {}",
+                               counted(result.images.size(), result.are_maps ? "map" : "image"));
+}
+
+std::string words_of(const FittedNumber& number) {
+    std::string words =
+        fmt::format("{} is not determined by this survey (+-{:.2g})", number.key, number.error);
+    if (number.fly_at)
+        words += fmt::format(": as many images again at {:.2g} m would bring its error to {:.2g}",
+                             number.fly_at->altitude_m,
+                             number.fly_at->error);
+    return words;
 }
 
 }  // namespace aphotic

@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The beam as a fit sees it: unknown shares of known parts,
+// The beam as a fit sees it: an intensity I(w) with a few coefficients c, whatever these are,
 //
-//   I(w) = sum_m beta_m f_m(w),      beta_m >= 0
+//   Table    ln I = sum_k c_k B_k(theta), cubic B-splines of the angle off the axis, knots
+//   kKnot_rad
+//            apart from 0 to the widest angle, mirrored at 0: I is positive, smooth, and even about
+//            the axis. Beyond the widest it goes on at its slope.
+//   Cones    c_k: the logarithm of a cone's share of the flux, of each of the rig's. Edges under
+//            kSoftEdge blocks are softened to that about where they are: a block's mean of a step
+//            is a slope, by which its place is found
+//   Cosine   cos^n theta, c: ln n
+//   Optics   the rig's optics, c: the logarithms of its focal length and distance
+//   Held     the rig's beam as it is, with edges as soft as blocks make them
 //
 // w   direction in the lamp's frame, a unit vector: along, across, axis (rig/beam/beam.h)
 //
-//   Table    f_m: cubic B-splines of the angle theta off the axis, knots even from 0 to the widest
-//            angle, mirrored at 0, so that I is smooth on the axis; 0 beyond the widest
-//   Cones    f_m: each of the rig's cones, edges under kSoftEdge blocks softened to that, about
-//            where they are: a block's mean of a step is a slope, by which its place is found
-//   Cosine   one part, cos^n theta, whose exponent n is a shape
-//   Optics   one part, the rig's optics, whose focal length and distance are shapes
-//   Held     one part, the rig's beam as it is
+// What is known beforehand of the coefficients is Gaussian, rows of R c - r of variance 1. Of a
+// table it is its second differences, 0 +- kRoughness (a P-spline: P. H. C. Eilers and B. D. Marx,
+// Statistical Science 11, 1996, 89), so that it goes on evenly where nobody looks; of all others
+// their logarithms, the rig's +- kShapeSpread. As a rig's powers tell how bright it is, the mean of
+// a table over what it lights is held, and the sum of all cones' shares.
 //
-// Shapes are what the parts depend on besides: found by the search that finds aim and water.
-// Derivatives of Table and Cosine are exact; those of the others are central differences of a
-// closed form, right to kSteps^2.
-//
-// De Boor's splines in their form for even knots: H. Prautzsch, W. Boehm and M. Paluszny, Bezier
-// and B-Spline Techniques (2002), 8.7.
+// Derivatives of Table and Cosine are exact, those of the others central differences of a closed
+// form, right to kSteps^2. De Boor's splines in their form for even knots: H. Prautzsch, W. Boehm
+// and M. Paluszny, Bezier and B-Spline Techniques (2002), 8.7.
 #pragma once
 
 #include "rig/beam/beam.h"
 
 #include <Eigen/Core>
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -35,74 +38,75 @@ namespace aphotic {
 
 // A cubic step as wide has the variance of the even one over a block: sqrt((1/12) / (1/20)).
 inline constexpr double kSoftEdge = 1.29;
+inline constexpr double kKnot_rad = 0.0524;  // 3 degrees
+inline constexpr double kRoughness = 0.3;
+inline constexpr double kShapeSpread = 0.3;
 inline constexpr double kMillimetres = 1e3;  // of a metre; in which rigs tell a lens
+// Of the angles that a fitted table is written at.
+inline constexpr double kFittedStep_deg = 0.5;
 
 enum class FitBeamKind { Table, Cones, Cosine, Optics, Held };
 
-// A part's share at a direction.
-struct BeamPartValue {
-    std::size_t part = 0;
-    double value = 0.0;
+// In one direction.
+struct BeamValue {
+    double intensity = 0.0;
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // over w, along the sphere
-    std::array<double, 2> by_shape{};
+    // Over the coefficients from `first` on; the others change nothing there.
+    std::size_t first = 0;
+    std::vector<double> by{};
+};
+
+// R and r.
+struct BeamPrior {
+    Eigen::MatrixXd rows;
+    Eigen::VectorXd means;
 };
 
 class FitBeam {
   public:
-    // Of a table: parts, four or more, over angles up to widest_rad.
-    [[nodiscard]] static FitBeam table(std::size_t parts, double widest_rad);
-    // Throws InputError where the beam is no sum of cones. block_rad: what a block spans.
-    [[nodiscard]] static FitBeam cones(const Beam& beam, double block_rad);
-    [[nodiscard]] static FitBeam cosine(double exponent);
-    // One part, the beam itself.
-    [[nodiscard]] static FitBeam held(const Beam& beam);
-    // Throws InputError where the beam is of no optics.
-    [[nodiscard]] static FitBeam optics(const Beam& beam);
+    // Begins as the beam, as far as the kind can. block_rad: what a block spans. An InputError
+    // where the beam has no such coefficients.
+    FitBeam(FitBeamKind kind, const Beam& beam, double widest_rad, double block_rad);
 
     [[nodiscard]] FitBeamKind kind() const { return kind_; }
-    [[nodiscard]] std::size_t parts() const { return parts_; }
-    [[nodiscard]] const std::vector<double>& shapes() const { return shapes_; }
-    [[nodiscard]] std::vector<std::string> shape_names() const;
-    [[nodiscard]] double& shape(std::size_t which) { return shapes_[which]; }
-    [[nodiscard]] double widest_rad() const { return widest_rad_; }
+    [[nodiscard]] const std::vector<double>& coefficients() const { return c_; }
+    [[nodiscard]] double& coefficient(std::size_t which) { return c_[which]; }
+    // Of all but a table's: what its exponential is, in the units that rigs have.
+    [[nodiscard]] std::vector<std::string> names() const;
+    [[nodiscard]] const BeamPrior& prior() const { return prior_; }
 
-    // Those that are not 0 there; of differences, the slopes only where they are asked for.
-    void at(const Eigen::Vector3d& w, bool has_slopes, std::vector<BeamPartValue>& values) const;
+    void at(const Eigen::Vector3d& w, BeamValue& value) const;
 
-    // Whether it is one that is fitted and the same all about its axis.
+    // Whether it is fitted and the same all about its axis.
     [[nodiscard]] bool is_round() const {
-        return kind_ == FitBeamKind::Table || kind_ == FitBeamKind::Cones ||
-               kind_ == FitBeamKind::Cosine;
+        return kind_ != FitBeamKind::Optics && kind_ != FitBeamKind::Held;
     }
-    // Of a round one, off its axis: each part, and the first part's slopes over the shapes.
-    [[nodiscard]] Eigen::VectorXd parts_at(double theta_rad) const;
-    [[nodiscard]] std::array<double, 2> slopes_at(double theta_rad) const;
+    [[nodiscard]] double widest_rad() const { return widest_rad_; }
     // As a rig has it: scaled to a flux of 1, and that flux.
     struct Fitted {
         Beam beam;
         double flux = 0.0;
     };
-    [[nodiscard]] Fitted beam_of(const Eigen::VectorXd& shares) const;
+    [[nodiscard]] Fitted fitted() const;
 
   private:
-    FitBeam() = default;
-    void splines_at(const Eigen::Vector3d& w, std::vector<BeamPartValue>& values) const;
-    void cosine_at(const Eigen::Vector3d& w, std::vector<BeamPartValue>& values) const;
-    void optics_at(const Eigen::Vector3d& w,
-                   bool has_slopes,
-                   std::vector<BeamPartValue>& values) const;
-    using Shapes = std::array<double, 2>;
-    [[nodiscard]] BeamOptics optics_with(const Shapes& shapes) const;
+    void begin_table();
+    void soften_cones(double block_rad);
+    void table_at(const Eigen::Vector3d& w, BeamValue& value) const;
+    void cosine_at(const Eigen::Vector3d& w, BeamValue& value) const;
+    [[nodiscard]] double table_intensity_at(double theta_rad) const;
+    // With these coefficients, as a beam of the rig's kinds: of cones and optics.
+    [[nodiscard]] double intensity_with(const std::vector<double>& c,
+                                        const Eigen::Vector3d& w) const;
+    [[nodiscard]] BeamOptics optics_with(const std::vector<double>& c) const;
 
-    FitBeamKind kind_ = FitBeamKind::Table;
-    std::size_t parts_ = 0;
-    double widest_rad_ = 0.0;
-    std::vector<double> shapes_;
-    Beam beam_;                     // the rig's, of cones and optics
-    std::vector<Beam> part_beams_;  // of cones, and of one that is held
+    FitBeamKind kind_;
+    double widest_rad_;
+    Beam beam_;                   // the rig's
+    std::vector<Beam> cones_;     // softened, each of a flux of 1
+    std::vector<double> shares_;  // of the rig's cones, logarithms
+    std::vector<double> c_;
+    BeamPrior prior_;
 };
-
-// Of the angles that a fitted table is written at.
-inline constexpr double kFittedStep_deg = 0.5;
 
 }  // namespace aphotic

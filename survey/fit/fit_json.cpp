@@ -3,14 +3,10 @@
 
 #include "base/degrees.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <string_view>
-#include <vector>
 
 namespace aphotic {
 namespace {
@@ -29,23 +25,11 @@ FitJson curve_json(const std::vector<BeamPoint>& curve) {
     return json;
 }
 
-// Of the shares, by beam and part, then of the numbers, in their units.
 FitJson covariance_json(const FitResult& result) {
     FitJson of = FitJson::array();
-    std::vector<double> units;
-    for (std::size_t b = 0; b < result.state.beams.size(); ++b) {
-        for (std::size_t part = 0; part < result.state.beams[b].parts(); ++part)
-            of.push_back(fmt::format("beam.{}.share.{}", b + 1, part + 1));
-    }
-    units.assign(of.size(), 1.0);
-    for (const FittedNumber& one : result.numbers) {
-        of.push_back(one.key);
-        units.push_back(one.per_unit);
-    }
-    const auto scale = Eigen::VectorXd::Map(units.data(), std::ssize(units)).asDiagonal();
-    const Eigen::MatrixXd covariance = scale * result.covariance * scale;
+    for (const FittedNumber& one : result.numbers) of.push_back(one.key);
     FitJson rows = FitJson::array();
-    for (const auto row : covariance.rowwise())
+    for (const auto row : result.covariance.rowwise())
         rows.push_back(std::vector<double>(row.begin(), row.end()));
     return {{"of", std::move(of)}, {"rows", std::move(rows)}};
 }
@@ -68,65 +52,63 @@ std::string_view word_of(FitBeamKind kind) {
 
 FitJson source_json(const FitResult& result) {
     const auto by_altitude = [](const ImageOutcome& image) { return image.sled.altitude_m; };
-    const auto [lowest, highest] = std::ranges::minmax(result.left.images, {}, by_altitude);
-    const FitBeam& beam = result.state.beams.front();
-    return {{result.are_maps ? "maps" : "images", result.left.images.size()},
-            {"altitude_m", {lowest.sled.altitude_m, highest.sled.altitude_m}},
+    const auto [lowest, highest] = std::ranges::minmax(result.images, {}, by_altitude);
+    return {{result.are_maps ? "maps" : "images", result.images.size()},
+            {"blocks", result.blocks},
             {"block_px", result.block_px},
-            {"beam", word_of(beam.kind())},
-            {"parts", beam.parts()}};
+            {"altitude_m", {lowest.sled.altitude_m, highest.sled.altitude_m}},
+            {"beam", word_of(result.state.beams.front().kind())}};
+}
+
+FitJson number_json(const FittedNumber& one) {
+    FitJson json{{"key", one.key},
+                 {"start", one.start},
+                 {"value", one.value},
+                 {"error", one.error},
+                 {"prior", one.spread},
+                 {"determined", one.is_determined}};
+    if (one.fly_at)
+        json["fly_at"] = {{"altitude_m", one.fly_at->altitude_m}, {"error", one.fly_at->error}};
+    return json;
 }
 
 }  // namespace
 
 FitJson to_json(const FitResult& result) {
     FitJson numbers = FitJson::array();
-    for (const FittedNumber& one : result.numbers) {
-        numbers.push_back({{"key", one.key},
-                           {"start", one.start},
-                           {"value", one.value},
-                           {"error", one.error},
-                           {"at_bound", one.is_at_bound}});
-    }
-    FitJson held = FitJson::array();
-    for (const NotTold& one : result.held) {
-        FitJson json{{"key", one.key},
-                     {"error", one.error},
-                     {"confounded_with",
-                      one.confounded_with.empty() ? FitJson() : FitJson(one.confounded_with)}};
-        json["fly_at_m"] = one.fly_at_m ? FitJson(*one.fly_at_m) : FitJson();
-        if (one.fly_at_m) json["error_then"] = one.error_then;
-        held.push_back(std::move(json));
-    }
+    for (const FittedNumber& one : result.numbers) numbers.push_back(number_json(one));
     FitJson confounded = FitJson::array();
     for (const Confounded& pair : result.confounded)
         confounded.push_back(
             {{"one", pair.one}, {"other", pair.other}, {"correlation", pair.correlation}});
     FitJson beams = FitJson::array();
     for (const auto& curve : result.beam_curves) beams.push_back(curve_json(curve));
-    const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
+    FitJson images = FitJson::array();
+    for (const ImageOutcome& image : result.images) {
+        images.push_back({{"name", image.name},
+                          {"altitude_m", image.sled.altitude_m},
+                          {"floor_brightness", image.brightness},
+                          {"altitude_off_m", image.off.x()},
+                          {"pitch_off_deg", image.off.y() * kDegreesPerRadian},
+                          {"roll_off_deg", image.off.z() * kDegreesPerRadian}});
+    }
     return {{"fitted_to", source_json(result)},
+            {"expected_unevenness", result.unevenness},
             {"numbers", std::move(numbers)},
-            {"held", std::move(held)},
-            {"as_the_rig_has", result.fixed},
+            {"fixed", result.fixed},
+            {"beams", std::move(beams)},
             {"confounded", std::move(confounded)},
             {"looks_wrong", to_json(result.looks_wrong)},
-            {"beams", std::move(beams)},
-            {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},
+            {"pattern",
+             {{"rms", result.pattern.rms},
+              {"by_chance", result.pattern.by_chance},
+              {"whitened", result.pattern.whitened}}},
+            {"veil_share", result.veil_share},
+            {"texture", result.texture},
+            {"floor_brightness_spread", result.level_spread},
+            {"images", std::move(images)},
             {"covariance", covariance_json(result)},
-            {"residual", result.left.residual},
-            {"pattern", result.left.pattern},
-            {"blocks", result.blocks},
-            {"image_deviations",
-             {{"level", deviation(0)},
-              {"red", deviation(1)},
-              {"blue", deviation(2)},
-              {"altitude_m", deviation(3)},
-              {"pitch_deg", deviation(4) * kDegreesPerRadian},
-              {"roll_deg", deviation(5) * kDegreesPerRadian}}},
-            {"noise_variance", result.noise.variance},
-            {"rounds", result.rounds},
-            {"steps", result.steps}};
+            {"rounds", result.rounds}};
 }
 
 }  // namespace aphotic

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit/fit_light.h"
 
-#include "base/lagrange.h"
+#include "light/floor_arrival.h"
+#include "light/floor_ray.h"
+#include "light/tile_fit.h"
 #include "rig/camera/lens.h"
 #include "rig/camera/vignetting.h"
 #include "rig/geometry.h"
 #include "spectral/bands.h"
 
+#include <ceres/jet.h>
 #include <Eigen/Geometry>
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -14,7 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -25,303 +28,397 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr double kNear_m = 1e-6;  // a lamp is never nearer to a ray
+constexpr double kStep = 1e-6;    // of the central differences of what is computed once an image
 
-// The floor under a sled, and how it moves with altitude, pitch and roll.
-struct Floor {
-    Vector3d up;
-    Vector3d point_m;
-    std::array<Vector3d, FitLight::kPoseColumns> up_by;
-    std::array<Vector3d, FitLight::kPoseColumns> point_by;
-};
+// By altitude, pitch and roll, then by the aim along and across.
+constexpr int kPose = FitLight::kPose;
+constexpr int kAim = kPose;
+using Jet = ceres::Jet<double, kAim + 2>;
 
-Floor floor_of(const Sled& sled) {
-    const double cp = std::cos(sled.pitch_rad);
-    const double sp = std::sin(sled.pitch_rad);
-    const double cq = std::cos(sled.roll_rad);
-    const double sq = std::sin(sled.roll_rad);
-    const Vector3d zero = Vector3d::Zero();
-    return {.up = {sp, -cp * sq, -cp * cq},
-            .point_m = {0.0, 0.0, sled.altitude_m},
-            .up_by = {zero, Vector3d(cp, sp * sq, sp * cq), Vector3d(0.0, -cp * cq, cp * sq)},
-            .point_by = {Vector3d::UnitZ(), zero, zero}};
+// A vector and its slope over one of the Jet's numbers.
+void add_slope(const Vector3d& slope, int by, Vector3<Jet>& of) {
+    for (Index k = 0; k < 3; ++k) of(k).v(by) += slope(k);
 }
 
-// Where a ray meets the floor, and how that moves.
-struct Landing {
-    double length_m = 0.0;
-    std::array<double, FitLight::kPoseColumns> length_by{};
+struct FloorJet {
+    Vector3<Jet> point_m;
+    Vector3<Jet> normal;
 };
-
-std::optional<Landing> landing_of(const Floor& floor, const WaterRay& ray) {
-    const Vector3d to_point = floor.point_m - ray.origin_m;
-    const double fall = floor.up.dot(ray.direction);
-    if (fall >= 0.0) return std::nullopt;
-    Landing landing{.length_m = floor.up.dot(to_point) / fall};
-    if (landing.length_m <= 0.0) return std::nullopt;
-    for (std::size_t q = 0; q < FitLight::kPoseColumns; ++q) {
-        landing.length_by[q] = (floor.up_by[q].dot(to_point) + floor.up.dot(floor.point_by[q]) -
-                                landing.length_m * floor.up_by[q].dot(ray.direction)) /
-                               fall;
+FloorJet floor_of(const Sled& sled) {
+    const Plane floor = floor_plane(sled);
+    FloorJet jet{.point_m = floor.point_m.cast<Jet>(), .normal = floor.normal.cast<Jet>()};
+    for (int k = 0; k < FitLight::kPose; ++k) {
+        const auto moved = [&](double step) {
+            Sled other = sled;
+            (k == 0 ? other.altitude_m : k == 1 ? other.pitch_rad : other.roll_rad) += step;
+            return floor_plane(other);
+        };
+        const Plane more = moved(kStep);
+        const Plane less = moved(-kStep);
+        add_slope((more.point_m - less.point_m) / (2.0 * kStep), k, jet.point_m);
+        add_slope((more.normal - less.normal) / (2.0 * kStep), k, jet.normal);
     }
-    return landing;
+    return jet;
 }
 
-struct Lamp {
-    Vector3d position_m;
-    Matrix3d into_frame;  // rows: along, across, axis
-    double height_m;
-    std::array<double, FitLight::kPoseColumns> height_by{};
-};
+Matrix3d into_frame(const Rig& rig, const std::array<double, 2>& aim_rad, std::size_t strobe) {
+    const BeamFrame frame = frame_about(aimed_axis(rig, aim_rad, strobe));
+    Matrix3d rows;
+    rows << frame.along.transpose(), frame.across.transpose(), frame.axis.transpose();
+    return rows;
+}
 
-Lamp lamp_of(const Rig& rig, const FitState& state, const Floor& floor, std::size_t strobe) {
-    const BeamFrame frame = frame_about(aimed_axis(rig, state, strobe));
-    Lamp lamp{.position_m = rig.strobes[strobe].position_m, .into_frame = {}, .height_m = 0.0};
-    lamp.into_frame.row(0) = frame.along;
-    lamp.into_frame.row(1) = frame.across;
-    lamp.into_frame.row(2) = frame.axis;
-    const Vector3d from_floor = lamp.position_m - floor.point_m;
-    lamp.height_m = floor.up.dot(from_floor);
-    for (std::size_t q = 0; q < FitLight::kPoseColumns; ++q)
-        lamp.height_by[q] = floor.up_by[q].dot(from_floor) - floor.up.dot(floor.point_by[q]);
+struct LampJet {
+    Vector3d position_m;
+    Jet height_m;
+    Eigen::Matrix<Jet, 3, 3> into_frame;
+};
+LampJet lamp_of(const Rig& rig, const FitState& state, const FloorJet& floor, std::size_t strobe) {
+    LampJet lamp{.position_m = rig.strobes[strobe].position_m, .height_m = {}, .into_frame = {}};
+    lamp.height_m = floor.normal.dot(lamp.position_m.cast<Jet>() - floor.point_m);
+    std::array<double, 2> aim_rad = state.aim_rad[strobe];
+    lamp.into_frame = into_frame(rig, aim_rad, strobe).cast<Jet>();
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double was = aim_rad[k];
+        aim_rad[k] = was + kStep;
+        const Matrix3d more = into_frame(rig, aim_rad, strobe);
+        aim_rad[k] = was - kStep;
+        const Matrix3d slope = (more - into_frame(rig, aim_rad, strobe)) / (2.0 * kStep);
+        aim_rad[k] = was;
+        for (Index row = 0; row < 3; ++row)
+            for (Index column = 0; column < 3; ++column)
+                lamp.into_frame(row, column).v(kAim + static_cast<int>(k)) = slope(row, column);
+    }
     return lamp;
 }
 
-struct NodeWeight {
-    std::size_t node;
-    double weight;
-};
+BasicFloorRay<Jet> ray_to(const FloorJet& floor, const WaterRay& ray) {
+    return {.origin_m = ray.origin_m,
+            .direction = ray.direction,
+            .down = -floor.normal.dot(ray.direction.cast<Jet>()),
+            .height_m = floor.normal.dot(ray.origin_m.cast<Jet>() - floor.point_m)};
+}
 
-// Nodes along one way of the image, from the first place to the last: each place its own, or one
-// for any two, but neither under kFewestVeilNodes nor over kFitVeilNodes.
-struct VeilAxis {
-    std::size_t nodes;
-    bool has_each_its_own;
-    double first;
-    double apart;
-
-    explicit VeilAxis(std::vector<double> places) {
-        std::ranges::sort(places);
-        first = places.front();
-        const double last = places.back();
-        places.erase(std::unique(places.begin(), places.end()), places.end());
-        nodes =
-            std::min(places.size(), std::clamp(places.size() / 2, kFewestVeilNodes, kFitVeilNodes));
-        has_each_its_own = nodes == places.size();
-        apart = nodes > 1 ? (last - first) / static_cast<double>(nodes - 1) : 1.0;
+// A 24th of second differences, each way; along the border they go on as a straight line.
+Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
+    const auto across = static_cast<Index>(places.across());
+    const auto down = static_cast<Index>(places.down());
+    const auto size = static_cast<Index>(places.size());
+    std::vector<Eigen::Triplet<double>> shares;
+    for (Index place = 0; place < size; ++place) {
+        shares.emplace_back(place, place, 1.0);
+        const auto add = [&](Index at, Index count, Index apart) {
+            if (places.block_px < 2 || count < 4) return;
+            const auto difference = [&](Index of, double share) {
+                const Index middle = place + (of - at) * apart;
+                shares.emplace_back(place, middle - apart, share / 24.0);
+                shares.emplace_back(place, middle, -2.0 * share / 24.0);
+                shares.emplace_back(place, middle + apart, share / 24.0);
+            };
+            const Index inner = std::clamp<Index>(at, 1, count - 2);
+            if (inner == at) return difference(at, 1.0);
+            difference(inner, 2.0);
+            difference(2 * inner - at, -1.0);
+        };
+        add(place % across, across, 1);
+        add(place / across, down, across);
     }
-    [[nodiscard]] double place(std::size_t node) const {
-        return first + static_cast<double>(node) * apart;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> means(size, size);
+    means.setFromTriplets(shares.begin(), shares.end());
+    return means;
+}
+
+// Applied to a place's rows as one.
+void apply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& shares,
+           const BlockLight::Rows& from,
+           BlockLight::Rows& to) {
+    const Index columns = kChannels * from.cols();
+    Eigen::Map<BlockLight::Rows>(to.data(), shares.rows(), columns).noalias() +=
+        shares * Eigen::Map<const BlockLight::Rows>(from.data(), shares.cols(), columns);
+}
+
+double mean_wavelength_nm(const Camera& camera, std::size_t channel) {
+    constexpr int kBands = 100;
+    double sum = 0.0;
+    double moment = 0.0;
+    for (const WeightedWavelength& band : equal_bands(camera.sensor, camera.range, kBands)) {
+        sum += band.weight[channel];
+        moment += band.weight[channel] * band.lambda_nm;
     }
-    [[nodiscard]] std::vector<NodeWeight> weights(double at) const {
-        const double x = (at - first) / apart;
-        if (has_each_its_own) return {{static_cast<std::size_t>(std::lround(x)), 1.0}};
-        const auto cell = static_cast<std::size_t>(x);
-        const std::size_t left = std::clamp<std::size_t>(cell, 1, nodes - 3) - 1;
-        const std::array<double, 4> cubic = lagrange_weights(x - static_cast<double>(left));
-        std::vector<NodeWeight> weights;
-        for (std::size_t k = 0; k < cubic.size(); ++k) weights.push_back({left + k, cubic[k]});
-        return weights;
-    }
-};
-
-enum class LitBy { Floor, Water, End };
-
-// Light of one lamp that some channels of a place get from one direction: a factor of the beam.
-// End is what a longer ray would add of the veil, by length.
-struct Lit {
-    LitBy by{};
-    std::size_t strobe = 0;
-    std::size_t row = 0;  // of the place's, or node's, first channel
-    std::size_t first_channel = 0;
-    std::size_t last_channel = 0;
-    Vector3d w;
-    std::array<double, kChannels> light{};
-    std::vector<std::array<double, kChannels>> by_water{};
-    // Of the floor's, with the ray's length.
-    std::array<double, kChannels> light_by_length{};
-    Vector3d w_by_length = Vector3d::Zero();
-    const Landing* landing = nullptr;
-    const Lamp* lamp = nullptr;
-};
-
-struct VeilRule {
-    std::vector<double> points;  // on 0 to 1
-    std::vector<double> weights;
-};
-
-const VeilRule& veil_rule() {
-    static const VeilRule kRule = [] {
-        using Gauss = boost::math::quadrature::gauss<double, kFitVeilPoints>;
-        VeilRule made;
-        for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
-            for (const double sign : {-1.0, 1.0}) {
-                made.points.push_back(0.5 + 0.5 * sign * Gauss::abscissa()[i]);
-                made.weights.push_back(0.5 * Gauss::weights()[i]);
-            }
-        }
-        return made;
-    }();
-    return kRule;
+    return moment / sum;
 }
 
 }  // namespace
 
-double& number_in(FitState& state, const FitNumber& number) {
-    switch (number.part) {
-        case FitPart::Water:
-            return state.water[number.of].value;
-        case FitPart::FloorColour:
-            return state.floor[number.which];
-        case FitPart::FloorBrightness:
-            return state.floor_brightness;
-        case FitPart::Aim:
-            return state.aim_rad[number.of][number.which];
-        case FitPart::Power:
-            return state.power[number.of];
-        case FitPart::LensFactor:
-            return state.vignetting[number.which];
-        case FitPart::Gain:
-            return state.gain[number.of];
-        case FitPart::Offset:
-            return number.which == 0   ? state.offset.altitude_m
-                   : number.which == 1 ? state.offset.pitch_rad
-                                       : state.offset.roll_rad;
-        case FitPart::BeamShape:
-            break;
-    }
-    return state.beams[number.of].shape(number.which);
+std::size_t FitPlaces::across() const {
+    return static_cast<std::size_t>(std::ranges::count(rows, rows.front()));
 }
 
-Vector3d aimed_axis(const Rig& rig, const FitState& state, std::size_t strobe) {
+double& number_in(FitState& state, const FitPlaceInState& at) {
+    switch (at.part) {
+        case FitPart::Water:
+            return state.water[at.of].value;
+        case FitPart::Tint:
+            return state.tint[at.which];
+        case FitPart::Brightness:
+            return state.floor_brightness;
+        case FitPart::Aim:
+            return state.aim_rad[at.of][at.which];
+        case FitPart::Power:
+            return state.power[at.of];
+        case FitPart::Lens:
+            return state.vignetting[at.which];
+        case FitPart::Offset:
+            return at.which == 0   ? state.offset.altitude_m
+                   : at.which == 1 ? state.offset.pitch_rad
+                                   : state.offset.roll_rad;
+        case FitPart::Beam:
+            break;
+    }
+    return state.beams[at.of].coefficient(at.which);
+}
+
+Vector3d aimed_axis(const Rig& rig, const std::array<double, 2>& aim_rad, std::size_t strobe) {
     const BeamFrame frame = frame_about(rig.strobes[strobe].axis);
-    const auto& [along_rad, across_rad] = state.aim_rad[strobe];
-    return (frame.axis + std::tan(along_rad) * frame.along + std::tan(across_rad) * frame.across)
+    return (frame.axis + std::tan(aim_rad[0]) * frame.along + std::tan(aim_rad[1]) * frame.across)
         .normalized();
 }
 
 namespace {
 
-// How the axis moves with the two angles, in the frame about it: a column each, of along and
-// across.
-Eigen::Matrix2d turns_of_axis(const Rig& rig, const FitState& state, std::size_t strobe) {
-    const BeamFrame was = frame_about(rig.strobes[strobe].axis);
-    const Vector3d axis = aimed_axis(rig, state, strobe);
-    const BeamFrame now = frame_about(axis);
-    const double size = 1.0 / axis.dot(was.axis);  // before it was made a unit vector
-    Eigen::Matrix2d turns;
-    for (Index k = 0; k < 2; ++k) {
-        const double cosine = std::cos(state.aim_rad[strobe][static_cast<std::size_t>(k)]);
-        const Vector3d by = (k == 0 ? was.along : was.across) / (cosine * cosine * size);
-        turns.col(k) << by.dot(now.along), by.dot(now.across);
-    }
-    return turns;
-}
-
-// What places and nodes have in common.
-struct Scene {
-    const FitState& state;
-    const PathLight& light;
-    Floor floor;
-    std::vector<Lamp> lamps;
-    bool has_slopes;
-    std::size_t versions;  // of the light that are looked at; one of light without derivatives
-
+// What places and nodes of an image have in common, and where their light goes: columns of the
+// numbers, of the pose, of the floor's light and of all light.
+class Scene {
+  public:
     Scene(const Rig& rig,
-          const FitState& in_state,
-          const PathLight& in_light,
+          const FitState& state,
+          const PathLight& light,
           const Sled& sled,
-          bool in_has_slopes)
-        : state(in_state),
-          light(in_light),
-          floor(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
-                          .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
-                          .roll_rad = sled.roll_rad + state.offset.roll_rad})),
-          has_slopes(in_has_slopes),
-          versions(has_slopes ? light.versions() : 1) {
-        for (std::size_t s = 0; s < rig.strobes.size(); ++s)
-            lamps.push_back(lamp_of(rig, state, floor, s));
+          const std::vector<FitPlaceInState>& numbers)
+        : state_(state),
+          light_(light),
+          floor_(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
+                           .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
+                           .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          pose_(std::ssize(numbers)) {
+        const auto column_of = [&](const FitPlaceInState& at) -> Index {
+            const auto found = std::ranges::find(numbers, at);
+            return found == numbers.end() ? kHeld : found - numbers.begin();
+        };
+        for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+            lamps_.push_back(lamp_of(rig, state, floor_, s));
+            aims_.push_back({column_of({FitPart::Aim, s, 0}), column_of({FitPart::Aim, s, 1})});
+            powers_.push_back(column_of({FitPart::Power, s}));
+            beams_.push_back(column_of({FitPart::Beam, state.beam_of[s]}));
+        }
+        for (std::size_t k = 0; k < state.water.size(); ++k)
+            versions_.push_back(column_of({FitPart::Water, k}));
+        for (std::size_t k = 0; k < state.tint.size(); ++k)
+            versions_.push_back(column_of({FitPart::Tint, 0, k}));
     }
 
-    // Of each ray and each lamp: take(ray, landing, lamp). Rays that do not come down to the floor
-    // end where `beyond` says; without it they are passed over.
-    template <typename Take>
-    void for_each_way(const std::vector<WaterRay>& rays,
-                      const std::optional<Landing>& beyond,
-                      std::size_t row,
-                      Lit& lit,
-                      const Take& take) const {
-        lit.row = row;
+    [[nodiscard]] const FitState& state() const { return state_; }
+    [[nodiscard]] const PathLight& light() const { return light_; }
+    [[nodiscard]] const FloorJet& floor() const { return floor_; }
+    [[nodiscard]] const std::vector<LampJet>& lamps() const { return lamps_; }
+    [[nodiscard]] Index pose() const { return pose_; }
+    [[nodiscard]] Index of_floor() const { return pose_ + kPose; }
+    [[nodiscard]] Index of_all() const { return pose_ + kPose + 1; }
+    [[nodiscard]] bool is_looked_for(std::size_t version) const {
+        return versions_[version - 1] != kHeld;
+    }
+
+    // Light of a lamp in the direction w: times the beam, for one channel.
+    struct Lit {
+        std::size_t strobe = 0;
+        bool is_floor = false;
+        Vector3<Jet> w;
+    };
+    struct OfBeam {
+        BeamValue value;
+        Jet intensity;
+    };
+    void look(const Lit& lit, OfBeam& beam) const {
+        state_.beams[state_.beam_of[lit.strobe]].at({lit.w.x().a, lit.w.y().a, lit.w.z().a},
+                                                    beam.value);
+        beam.intensity = Jet(beam.value.intensity);
+        for (Index k = 0; k < 3; ++k) beam.intensity.v += beam.value.gradient(k) * lit.w(k).v;
+    }
+    // factor: what of the beam's light is seen. by_version: the same of versions from 1 on.
+    void add(const Lit& lit,
+             const OfBeam& beam,
+             const Jet& factor,
+             const std::vector<double>& by_version,
+             BlockLight::Rows::RowXpr row) const {
+        const Jet value = beam.intensity * factor;
+        row(of_all()) += value.a;
+        if (lit.is_floor) row(of_floor()) += value.a;
+        for (int k = 0; k < kPose; ++k) row(pose_ + k) += value.v(k);
+        const auto put = [&](Index column, double slope) {
+            if (column != kHeld) row(column) += slope;
+        };
+        for (std::size_t k = 0; k < 2; ++k)
+            put(aims_[lit.strobe][k], value.v(kAim + static_cast<int>(k)));
+        put(powers_[lit.strobe], value.a / state_.power[lit.strobe]);
+        if (beams_[lit.strobe] != kHeld) {
+            for (std::size_t k = 0; k < beam.value.by.size(); ++k)
+                row(beams_[lit.strobe] + static_cast<Index>(beam.value.first + k)) +=
+                    beam.value.by[k] * factor.a;
+        }
+        for (std::size_t v = 0; v < versions_.size(); ++v)
+            put(versions_[v], beam.intensity.a * by_version[v]);
+    }
+
+  private:
+    static constexpr Index kHeld = -1;
+    const FitState& state_;
+    const PathLight& light_;
+    FloorJet floor_;
+    Index pose_;
+    std::vector<LampJet> lamps_;
+    std::vector<std::array<Index, 2>> aims_;
+    std::vector<Index> powers_;
+    std::vector<Index> beams_;  // of the beam's first coefficient: the others follow
+    std::vector<Index> versions_;
+};
+
+void light_floor(const Scene& scene,
+                 const std::vector<FitLight::Sight>& sights,
+                 BlockLight::Rows& rows) {
+    const FitState& state = scene.state();
+    Scene::Lit lit{.is_floor = true, .w = {}};
+    Scene::OfBeam beam;
+    std::vector<double> by_version(scene.light().versions() - 1);
+    for (std::size_t place = 0; place < sights.size(); ++place) {
+        const FitLight::Rays& rays = sights[place].rays;
         for (std::size_t r = 0; r < rays.size(); ++r) {
-            std::optional<Landing> landing = landing_of(floor, rays[r]);
-            if (!landing) landing = beyond;
-            if (!landing) continue;
-            lit.landing = &*landing;
-            lit.first_channel = rays.size() == 1 ? 0 : r;
-            lit.last_channel = rays.size() == 1 ? kChannels : r + 1;
-            for (lit.strobe = 0; lit.strobe < lamps.size(); ++lit.strobe) {
-                lit.lamp = &lamps[lit.strobe];
-                take(rays[r], *landing, lamps[lit.strobe]);
+            const BasicFloorRay<Jet> ray = ray_to(scene.floor(), rays[r]);
+            if (!ray.sees_floor()) continue;
+            for (lit.strobe = 0; lit.strobe < scene.lamps().size(); ++lit.strobe) {
+                const LampJet& lamp = scene.lamps()[lit.strobe];
+                const Vector3<Jet> V = towards(lamp.position_m, ray);
+                const Jet length = sqrt(V.squaredNorm());
+                const Arriving<Jet> way = arriving(lamp.height_m, ray, length);
+                lit.w = lamp.into_frame * V / length;
+                scene.look(lit, beam);
+                const Jet spread =
+                    (state.floor_brightness * state.power[lit.strobe] / pi) * way.per_area;
+                std::vector<PathSignal> T;
+                for (std::size_t v = 0; v < scene.light().versions(); ++v)
+                    T.push_back(v == 0 || scene.is_looked_for(v)
+                                    ? scene.light().floor(lit.strobe, v, way.path_m.a)
+                                    : PathSignal{});
+                const std::size_t last = rays.size() == 1 ? kChannels : r + 1;
+                for (std::size_t c = rays.size() == 1 ? 0 : r; c < last; ++c) {
+                    Jet signal(T[0].value[c]);
+                    signal.v = T[0].slope[c] * way.path_m.v;
+                    for (std::size_t v = 1; v < T.size(); ++v)
+                        by_version[v - 1] = spread.a * T[v].value[c];
+                    scene.add(lit,
+                              beam,
+                              spread * signal,
+                              by_version,
+                              rows.row(static_cast<Index>(kChannels * place + c)));
+                }
             }
         }
     }
-};
-
-}  // namespace
-
-namespace {
-
-// The mean over a block by its neighbours' middles, along one way of a grid.
-struct BlockMean {
-    std::size_t first = 0;  // block
-    std::vector<double> weights;
-};
-
-// By Lagrange's polynomial through the middles, at each of the block's pixels.
-BlockMean mean_over(std::size_t block, std::size_t blocks, int block_px) {
-    const std::size_t size = std::min(kMeanBlocks, blocks);
-    const std::size_t before = std::min(block, size / 2);
-    BlockMean mean{.first = std::min(block - before, blocks - size),
-                   .weights = std::vector<double>(size, 0.0)};
-    for (int pixel = 0; pixel < block_px; ++pixel) {
-        const double at = static_cast<double>(block - mean.first) + (pixel + 0.5) / block_px - 0.5;
-        for (std::size_t i = 0; i < size; ++i) {
-            double share = 1.0 / block_px;
-            for (std::size_t k = 0; k < size; ++k) {
-                if (k == i) continue;
-                share *= (at - static_cast<double>(k)) /
-                         (static_cast<double>(i) - static_cast<double>(k));
-            }
-            mean.weights[i] += share;
-        }
-    }
-    return mean;
 }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
-    Eigen::SparseMatrix<double, Eigen::RowMajor> means;
-    if (places.block_px < 2) return means;
-    const auto across =
-        static_cast<std::size_t>(std::ranges::count(places.rows, places.rows.front()));
-    const std::size_t down = places.size() / across;
-    std::vector<Eigen::Triplet<double>> weights;
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        const BlockMean x = mean_over(place % across, across, places.block_px);
-        const BlockMean y = mean_over(place / across, down, places.block_px);
-        for (std::size_t j = 0; j < y.weights.size(); ++j) {
-            for (std::size_t i = 0; i < x.weights.size(); ++i) {
-                weights.emplace_back(static_cast<int>(place),
-                                     static_cast<int>((y.first + j) * across + x.first + i),
-                                     x.weights[i] * y.weights[j]);
+void light_water(const Scene& scene,
+                 const std::vector<FitLight::Rays>& nodes,
+                 BlockLight::Rows& of_nodes) {
+    using Gauss = boost::math::quadrature::gauss<double, kFitVeilPoints>;
+    const PathLight& light = scene.light();
+    Scene::Lit lit;
+    Scene::OfBeam beam;
+    std::vector<double> by_version(light.versions() - 1);
+    // Scattered light at an angle at the lamp, phi, of a ray that it is away_m off.
+    const auto scatter = [&](const WaterRay& ray, std::size_t node, std::size_t r, double last) {
+        const LampJet& lamp = scene.lamps()[lit.strobe];
+        const Vector3d from_lamp = ray.origin_m - lamp.position_m;
+        const double foot_m = -from_lamp.dot(ray.direction);
+        const double away_m = std::max((from_lamp + foot_m * ray.direction).norm(), kNear_m);
+        const double end = std::atan2(last - foot_m, away_m);
+        const double first = std::max(std::atan2(-foot_m, away_m), kVeilCut - 0.5 * pi);
+        if (end <= first) return;
+        const auto add_point = [&](double x, double weight) {
+            const double phi = first + 0.5 * (end - first) * (1.0 + x);
+            const double t = foot_m + away_m * std::tan(phi);
+            const double path_m = t + away_m / std::cos(phi);
+            lit.w = lamp.into_frame * (from_lamp + t * ray.direction).normalized().cast<Jet>();
+            scene.look(lit, beam);
+            const double factor =
+                scene.state().power[lit.strobe] * 0.5 * weight * (end - first) / away_m;
+            std::array<double, kChannels> value{};
+            std::vector<std::array<double, kChannels>> by(by_version.size());
+            for (std::size_t i = 0; i < light.scatterers(); ++i) {
+                const double p = factor * light.phase(0, i, phi + 0.5 * pi);
+                const PathSignal V = light.veil(lit.strobe, 0, i, path_m);
+                for (std::size_t c = 0; c < kChannels; ++c) value[c] += p * V.value[c];
+                for (std::size_t v = 1; v < light.versions(); ++v) {
+                    if (!scene.is_looked_for(v)) continue;
+                    const double p_v = factor * light.phase(v, i, phi + 0.5 * pi);
+                    const PathSignal V_v = light.veil(lit.strobe, v, i, path_m);
+                    for (std::size_t c = 0; c < kChannels; ++c)
+                        by[v - 1][c] += p * V_v.value[c] + p_v * V.value[c];
+                }
             }
+            const std::size_t count = nodes[node].size();
+            const std::size_t after = count == 1 ? kChannels : r + 1;
+            for (std::size_t c = count == 1 ? 0 : r; c < after; ++c) {
+                for (std::size_t v = 0; v < by.size(); ++v) by_version[v] = by[v][c];
+                scene.add(lit,
+                          beam,
+                          Jet(value[c]),
+                          by_version,
+                          of_nodes.row(static_cast<Index>(kChannels * node + c)));
+            }
+        };
+        for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i)
+            for (const double sign : {-1.0, 1.0})
+                add_point(sign * Gauss::abscissa()[i], Gauss::weights()[i]);
+    };
+    for (std::size_t node = 0; node < nodes.size(); ++node) {
+        for (std::size_t r = 0; r < nodes[node].size(); ++r) {
+            const WaterRay& ray = nodes[node][r];
+            const BasicFloorRay<Jet> sight = ray_to(scene.floor(), ray);
+            // Towards the horizon about as far as the longest path that is tabulated.
+            const double last_m = sight.sees_floor()
+                                      ? std::min(sight.height_m.a / sight.down.a, light.longest_m())
+                                      : 0.5 * light.longest_m();
+            for (lit.strobe = 0; lit.strobe < scene.lamps().size(); ++lit.strobe)
+                scatter(ray, node, r, last_m);
         }
     }
-    means.resize(static_cast<Index>(places.size()), static_cast<Index>(places.size()));
-    means.setFromTriplets(weights.begin(), weights.end());
-    return means;
 }
 
-double vignetting_of(const std::vector<double>& a, double q) {
-    return 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+void apply_vignetting(const FitState& state,
+                      const std::vector<FitPlaceInState>& numbers,
+                      const std::vector<FitLight::Sight>& sights,
+                      BlockLight::Rows& rows) {
+    const Index all = rows.cols() - 1;
+    for (std::size_t place = 0; place < sights.size(); ++place) {
+        const FitLight::Sight& sight = sights[place];
+        const std::vector<double>& a = state.vignetting;
+        const double q = sight.from_middle2;
+        double V = sight.vignetting;
+        std::array<double, 3> slopes{q, q * q, q * q * q};
+        if (a.size() == 1) {
+            V = std::pow(sight.cosine, a[0]);
+            slopes[0] = V * std::log(sight.cosine);
+        } else if (a.size() == 3) {
+            V = 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+        }
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            auto row = rows.row(static_cast<Index>(kChannels * place + c));
+            const double bare = row(all);
+            row *= V;
+            for (std::size_t k = 0; k < numbers.size(); ++k)
+                if (numbers[k].part == FitPart::Lens)
+                    row(static_cast<Index>(k)) = bare * slopes.at(numbers[k].which);
+        }
+    }
 }
 
 }  // namespace
@@ -329,20 +426,11 @@ double vignetting_of(const std::vector<double>& a, double q) {
 FitLight::FitLight(const Rig& rig, const FitPlaces& places)
     : rig_(rig), places_(places), means_(means_over_blocks(places)) {
     const Camera& camera = rig.camera;
-    std::vector<double> lambda_nm;
+    std::vector<double> lambda_nm{0.5 * (camera.range.first_nm + camera.range.last_nm)};
     if (camera.port) {
-        for (int c = 0; c < kChannels; ++c) {
-            double sum = 0.0;
-            double moment = 0.0;
-            for (const WeightedWavelength& band : equal_bands(camera.sensor, camera.range, 100)) {
-                const double weight = band.weight[static_cast<std::size_t>(c)];
-                sum += weight;
-                moment += weight * band.lambda_nm;
-            }
-            lambda_nm.push_back(moment / sum);
-        }
-    } else {
-        lambda_nm.push_back(0.5 * (camera.range.first_nm + camera.range.last_nm));
+        lambda_nm.clear();
+        for (std::size_t c = 0; c < kChannels; ++c)
+            lambda_nm.push_back(mean_wavelength_nm(camera, c));
     }
     const auto rays_at = [&](double column, double row) {
         Rays rays;
@@ -350,359 +438,104 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places)
         return rays;
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
-        sights_.push_back({.rays = rays_at(places.columns[i], places.rows[i]),
-                           .from_middle2 = radial_square(camera, places.columns[i], places.rows[i]),
-                           .vignetting = vignetting_at(camera, places.columns[i], places.rows[i])});
+        const double column = places.columns[i];
+        const double row = places.rows[i];
+        sights_.push_back({.rays = rays_at(column, row),
+                           .from_middle2 = radial_square(camera, column, row),
+                           .cosine = direction_in_air(camera, column, row).z(),
+                           .vignetting = vignetting_at(camera, column, row)});
     }
     if (!rig.water.scatters()) return;
-    const VeilAxis across(places.columns);
-    const VeilAxis down(places.rows);
-    for (std::size_t j = 0; j < down.nodes; ++j) {
-        for (std::size_t i = 0; i < across.nodes; ++i)
-            veil_nodes_.push_back(rays_at(across.place(i), down.place(j)));
+    // From -1 to 1 over the image.
+    const auto along = [](double place, int size_px) { return 2.0 * place / size_px - 1.0; };
+    for (int j = 0; j < kTilePoints; ++j) {
+        for (int i = 0; i < kTilePoints; ++i)
+            veil_nodes_.push_back(rays_at(0.5 * camera.width_px * (1.0 + chebyshev_point(i)),
+                                          0.5 * camera.height_px * (1.0 + chebyshev_point(j))));
     }
-    std::vector<Eigen::Triplet<double>> weights;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        for (const NodeWeight& y : down.weights(places.rows[k])) {
-            for (const NodeWeight& x : across.weights(places.columns[k])) {
-                weights.emplace_back(static_cast<int>(k),
-                                     static_cast<int>(y.node * across.nodes + x.node),
-                                     y.weight * x.weight);
-            }
-        }
+    // First along the image's rows of nodes, then down its columns of places.
+    const auto across = static_cast<Index>(places.across());
+    std::vector<Eigen::Triplet<double>> shares;
+    for (Index i = 0; i < across; ++i) {
+        const auto x =
+            chebyshev_shares(along(places.columns[static_cast<std::size_t>(i)], camera.width_px));
+        for (Index j = 0; j < kTilePoints; ++j)
+            for (Index k = 0; k < kTilePoints; ++k)
+                shares.emplace_back(
+                    j * across + i, j * kTilePoints + k, x[static_cast<std::size_t>(k)]);
     }
-    from_nodes_.resize(static_cast<Index>(places.size()), static_cast<Index>(veil_nodes_.size()));
-    from_nodes_.setFromTriplets(weights.begin(), weights.end());
-}
-
-std::size_t FitLight::part_columns(const FitState& state) {
-    std::size_t columns = 0;
-    for (const FitBeam& beam : state.beams) columns += beam.parts();
-    return columns;
-}
-
-template <typename Scene, typename Add>
-void FitLight::light_floor(const Scene& scene, const Add& add) const {
-    const FitState& state = scene.state;
-    std::vector<double> T(scene.light.versions() * kChannels);
-    std::vector<double> T_by_length(T.size());
-    Lit lit;
-    lit.by_water.resize(scene.versions - 1);
-    const auto take = [&](const WaterRay& ray, const Landing& landing, const Lamp& lamp) {
-        const Vector3d way = ray.origin_m + landing.length_m * ray.direction - lamp.position_m;
-        const double d = way.norm();
-        const double d_by_length = way.dot(ray.direction) / d;
-        lit.w = lamp.into_frame * way / d;
-        const double spread =
-            state.floor_brightness * state.power[lit.strobe] * lamp.height_m / (pi * d * d * d);
-        const CubicTable& table = scene.light.floor(lit.strobe);
-        table.at(d + landing.length_m, T.data());
-        for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-            lit.light[c] = state.gain[c] * spread * T[c];
-            for (std::size_t v = 1; v < scene.versions; ++v)
-                lit.by_water[v - 1][c] = state.gain[c] * spread * T[v * kChannels + c];
-        }
-        if (scene.has_slopes) {
-            table.slopes_at(d + landing.length_m, T_by_length.data());
-            lit.w_by_length = (lamp.into_frame * ray.direction - lit.w * d_by_length) / d;
-            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-                lit.light_by_length[c] =
-                    state.gain[c] * spread *
-                    (T_by_length[c] * (1.0 + d_by_length) - 3.0 * T[c] * d_by_length / d);
-            }
-        }
-        add(lit);
-    };
-    for (std::size_t place = 0; place < sights_.size(); ++place)
-        scene.for_each_way(sights_[place].rays, std::nullopt, kChannels * place, lit, take);
-}
-
-template <typename Scene, typename Add>
-void FitLight::light_water(const Scene& scene, const Add& add) const {
-    const FitState& state = scene.state;
-    const std::size_t scatterers = scene.light.scatterers();
-    std::vector<double> V(scene.light.versions() * scatterers * kChannels);
-    std::vector<double> p(scene.light.versions() * scatterers);
-    Lit lit;
-    lit.by_water.resize(scene.versions - 1);
-
-    // Of scattered light at a point of the ray: factor times sum of p V.
-    const auto scatter = [&](double factor, double psi, double path_m) {
-        scene.light.phases().at(psi, p.data());
-        scene.light.veil(lit.strobe).at(path_m, V.data());
-        lit.light.fill(0.0);
-        for (auto& by : lit.by_water) by.fill(0.0);
-        for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-            const double of_channel = state.gain[c] * factor;
-            for (std::size_t i = 0; i < scatterers; ++i) {
-                const double value = V[i * kChannels + c];
-                lit.light[c] += of_channel * p[i] * value;
-                for (std::size_t v = 1; v < scene.versions; ++v) {
-                    const std::size_t lane = v * scatterers + i;
-                    lit.by_water[v - 1][c] +=
-                        of_channel * (p[i] * V[lane * kChannels + c] + p[lane] * value);
-                }
-            }
-        }
-    };
-    const auto take = [&](const WaterRay& ray, const Landing& landing, const Lamp& lamp) {
-        const Vector3d from_lamp = ray.origin_m - lamp.position_m;
-        const double foot_m = -from_lamp.dot(ray.direction);
-        const Vector3d across = from_lamp + foot_m * ray.direction;
-        const double away_m = std::max(across.norm(), kNear_m);
-        const double last = std::atan2(landing.length_m - foot_m, away_m);
-        const double first = std::max(std::atan2(-foot_m, away_m), kVeilCut - 0.5 * pi);
-        if (last <= first) return;
-        const double power = state.power[lit.strobe];
-        lit.by = LitBy::Water;
-        const VeilRule& rule = veil_rule();
-        for (std::size_t i = 0; i < rule.points.size(); ++i) {
-            const double phi = first + (last - first) * rule.points[i];
-            const double t = foot_m + away_m * std::tan(phi);
-            lit.w = lamp.into_frame * (from_lamp + t * ray.direction).normalized();
-            scatter(power * rule.weights[i] * (last - first) / away_m,
-                    phi + 0.5 * pi,
-                    t + away_m / std::cos(phi));
-            add(lit);
-        }
-        if (!scene.has_slopes) return;
-        lit.by = LitBy::End;
-        const Vector3d way = from_lamp + landing.length_m * ray.direction;
-        const double d = way.norm();
-        lit.w = lamp.into_frame * way / d;
-        scatter(power / (d * d), last + 0.5 * pi, d + landing.length_m);
-        add(lit);
-    };
-    // About as far as the longest path that is tabulated, there and back.
-    const CubicTable& table = scene.light.veil(0);
-    const Landing beyond{.length_m = 0.5 * table.place(table.nodes() - 1)};
-    for (std::size_t node = 0; node < veil_nodes_.size(); ++node)
-        scene.for_each_way(veil_nodes_[node], beyond, kChannels * node, lit, take);
-}
-
-void FitLight::add_between_nodes(const Rows& of_nodes, Rows& rows) const {
-    // A place's three rows as one, and a node's.
-    const Index columns = kChannels * rows.cols();
-    const Eigen::Map<const Rows> from(of_nodes.data(), from_nodes_.cols(), columns);
-    Eigen::Map<Rows>(rows.data(), from_nodes_.rows(), columns).noalias() += from_nodes_ * from;
-}
-
-void FitLight::average_over_blocks(Rows& rows) const {
-    if (means_.size() == 0) return;
-    const Index columns = kChannels * rows.cols();
-    Rows means(rows.rows(), rows.cols());
-    Eigen::Map<Rows>(means.data(), means_.rows(), columns).noalias() =
-        means_ * Eigen::Map<const Rows>(rows.data(), means_.cols(), columns);
-    rows.swap(means);
-}
-
-bool FitLight::is_bright(const FitState& state) const {
-    constexpr int kRadii = 64;
-    const Camera& camera = rig_.camera;
-    double farthest2 = 0.0;
-    for (const int column : {0, camera.width_px})
-        for (const int row : {0, camera.height_px})
-            farthest2 = std::max(farthest2, radial_square(camera, column, row));
-    for (int i = 0; i <= kRadii && !state.vignetting.empty(); ++i) {
-        if (vignetting_of(state.vignetting, farthest2 * i / kRadii) <= 0.0) return false;
+    along_rows_.resize(kTilePoints * across, std::ssize(veil_nodes_));
+    along_rows_.setFromTriplets(shares.begin(), shares.end());
+    shares.clear();
+    for (Index place = 0; place < std::ssize(places.rows); ++place) {
+        const auto y =
+            chebyshev_shares(along(places.rows[static_cast<std::size_t>(place)], camera.height_px));
+        for (Index j = 0; j < kTilePoints; ++j)
+            shares.emplace_back(place, j * across + place % across, y[static_cast<std::size_t>(j)]);
     }
-    return true;
+    down_columns_.resize(std::ssize(places.rows), along_rows_.rows());
+    down_columns_.setFromTriplets(shares.begin(), shares.end());
 }
 
-void FitLight::multiply_by_vignetting(const FitState& state, Rows& rows) const {
-    for (std::size_t place = 0; place < sights_.size(); ++place) {
-        const double q = sights_[place].from_middle2;
-        const double V = state.vignetting.empty() ? sights_[place].vignetting
-                                                  : vignetting_of(state.vignetting, q);
-        rows.middleRows(static_cast<Index>(kChannels * place), kChannels) *= V;
-    }
-}
-
-void FitLight::parts_into(const FitState& state,
-                          const PathLight& light,
-                          const Sled& sled,
-                          Rows& rows_of) const {
-    std::vector<Index> first_part;
-    Index parts = 0;
-    for (const FitBeam& beam : state.beams) {
-        first_part.push_back(parts);
-        parts += static_cast<Index>(beam.parts());
-    }
-    std::vector<BeamPartValue> values;
-    const auto add_to = [&](Rows& lit_rows) {
-        return [&](const Lit& lit) {
-            const std::size_t b = state.beam_of[lit.strobe];
-            state.beams[b].at(lit.w, false, values);
-            for (const BeamPartValue& value : values) {
-                const Index column = first_part[b] + static_cast<Index>(value.part);
-                for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c)
-                    lit_rows(static_cast<Index>(lit.row + c), column) += value.value * lit.light[c];
-            }
-        };
-    };
-    const Scene scene(rig_, state, light, sled, false);
-    rows_of.setZero(static_cast<Index>(rows()), parts);
-    light_floor(scene, add_to(rows_of));
+BlockLight FitLight::at(const FitState& state,
+                        const PathLight& light,
+                        const Sled& sled,
+                        const std::vector<FitPlaceInState>& numbers) const {
+    const Scene scene(rig_, state, light, sled, numbers);
+    const auto rows = static_cast<Index>(kChannels * places_.size());
+    using Rows = BlockLight::Rows;
+    Rows middles = Rows::Zero(rows, scene.of_all() + 1);
+    light_floor(scene, sights_, middles);
     if (light.scatterers() > 0) {
-        Rows of_nodes = Rows::Zero(static_cast<Index>(kChannels * veil_nodes_.size()), parts);
-        light_water(scene, add_to(of_nodes));
-        add_between_nodes(of_nodes, rows_of);
+        Rows of_nodes = Rows::Zero(kChannels * std::ssize(veil_nodes_), middles.cols());
+        light_water(scene, veil_nodes_, of_nodes);
+        Rows of_rows = Rows::Zero(kChannels * along_rows_.rows(), middles.cols());
+        apply(along_rows_, of_nodes, of_rows);
+        apply(down_columns_, of_rows, middles);
     }
-    multiply_by_vignetting(state, rows_of);
-    average_over_blocks(rows_of);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        const auto column = static_cast<Index>(k);
+        if (numbers[k].part == FitPart::Offset)
+            middles.col(column) = middles.col(scene.pose() + static_cast<Index>(numbers[k].which));
+        if (numbers[k].part == FitPart::Brightness)
+            middles.col(column) = middles.col(scene.of_floor()) / state.floor_brightness;
+    }
+    apply_vignetting(state, numbers, sights_, middles);
+    Rows means = Rows::Zero(rows, middles.cols());
+    apply(means_, middles, means);
+    BlockLight found;
+    const Eigen::VectorXd all = means.col(scene.of_all());
+    found.logarithm =
+        (all.array() > 0.0).select(all.array().log(), std::numeric_limits<double>::quiet_NaN());
+    const Eigen::VectorXd per = all.cwiseInverse();
+    found.floor_share = means.col(scene.of_floor()).cwiseProduct(per);
+    found.slopes = per.asDiagonal() * means.leftCols(scene.pose());
+    found.by_pose = per.asDiagonal() * means.middleCols(scene.pose(), kPose);
+    return found;
 }
 
-void FitLight::columns_into(const FitState& state,
-                            const PathLight& light,
-                            const Sled& sled,
-                            const Eigen::VectorXd& shares,
-                            const std::vector<FitNumber>& numbers,
-                            Rows& all) const {
-    constexpr Index kHeld = -1;
-    const auto count = static_cast<Index>(numbers.size());
-    const auto first_number = static_cast<Index>(part_columns(state));
-    const auto column_of = [&](FitPart part, std::size_t of, std::size_t which) {
-        const auto at = std::find_if(numbers.begin(), numbers.end(), [&](const FitNumber& n) {
-            return n.part == part && n.of == of && n.which == which;
-        });
-        return at == numbers.end() ? kHeld
-                                   : first_number + static_cast<Index>(at - numbers.begin());
-    };
-    struct Columns {
-        std::array<Index, 2> aim;
-        Index power;
-        std::array<Index, 2> shape;
-        Eigen::Matrix2d turns;
-    };
-    std::vector<Columns> columns;
-    std::vector<Index> first_part;
-    Index parts = 0;
-    for (const FitBeam& beam : state.beams) {
-        first_part.push_back(parts);
-        parts += static_cast<Index>(beam.parts());
-    }
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        const std::size_t b = state.beam_of[s];
-        columns.push_back(
-            {.aim = {column_of(FitPart::Aim, s, 0), column_of(FitPart::Aim, s, 1)},
-             .power = column_of(FitPart::Power, s, 0),
-             .shape = {column_of(FitPart::BeamShape, b, 0), column_of(FitPart::BeamShape, b, 1)},
-             .turns = turns_of_axis(rig_, state, s)});
-    }
-    std::vector<Index> water;
-    for (std::size_t k = 0; k < state.water.size(); ++k)
-        water.push_back(column_of(FitPart::Water, k, 0));
-    for (std::size_t k = 0; k < state.floor.size(); ++k)
-        water.push_back(column_of(FitPart::FloorColour, 0, k));
-
-    const Index of_pose = first_number + count;
-    const Index of_floor = of_pose + static_cast<Index>(kPoseColumns);
-    const Index of_signal = of_floor + 1;
-    std::vector<BeamPartValue> values;
-    const auto add_to = [&](Rows& lit_rows) {
-        return [&](const Lit& lit) {
-            const std::size_t b = state.beam_of[lit.strobe];
-            state.beams[b].at(lit.w, true, values);
-            double I = 0.0;
-            Vector3d gradient = Vector3d::Zero();
-            std::array<double, 2> by_shape{};
-            for (const BeamPartValue& value : values) {
-                const double share = shares(first_part[b] + static_cast<Index>(value.part));
-                I += share * value.value;
-                gradient += share * value.gradient;
-                for (std::size_t k = 0; k < 2; ++k) by_shape[k] += share * value.by_shape[k];
-            }
-            const Vector3d& w = lit.w;
-            const Columns& of = columns[lit.strobe];
-            const Eigen::RowVector2d by_aim =
-                Eigen::RowVector2d(gradient.z() * w.x() - gradient.x() * w.z(),
-                                   gradient.z() * w.y() - gradient.y() * w.z()) *
-                of.turns;
-            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-                auto row = lit_rows.row(static_cast<Index>(lit.row + c));
-                const double value = I * lit.light[c];
-                const auto add = [&](Index column, double slope) {
-                    if (column != kHeld) row(column) += slope;
-                };
-                if (lit.by == LitBy::End) {
-                    for (std::size_t q = 0; q < kPoseColumns; ++q)
-                        row(of_pose + static_cast<Index>(q)) += value * lit.landing->length_by[q];
-                    continue;
-                }
-                for (const BeamPartValue& part : values)
-                    row(first_part[b] + static_cast<Index>(part.part)) += part.value * lit.light[c];
-                row(of_signal) += value;
-                if (lit.by == LitBy::Floor) row(of_floor) += value;
-                add(of.aim[0], by_aim(0) * lit.light[c]);
-                add(of.aim[1], by_aim(1) * lit.light[c]);
-                add(of.power, value / state.power[lit.strobe]);
-                for (std::size_t k = 0; k < 2; ++k) add(of.shape[k], by_shape[k] * lit.light[c]);
-                // None of light without derivatives.
-                for (std::size_t k = 0; k < lit.by_water.size(); ++k)
-                    add(water[k], I * lit.by_water[k][c]);
-                if (lit.by == LitBy::Water) continue;
-                const double by_length =
-                    I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];
-                for (std::size_t q = 0; q < kPoseColumns; ++q) {
-                    row(of_pose + static_cast<Index>(q)) +=
-                        by_length * lit.landing->length_by[q] +
-                        value / lit.lamp->height_m * lit.lamp->height_by[q];
-                }
-            }
-        };
-    };
-    const Scene scene(rig_, state, light, sled, true);
-    all.setZero(static_cast<Index>(rows()), of_signal + 1);
-    light_floor(scene, add_to(all));
-    if (light.scatterers() > 0) {
-        Rows of_nodes =
-            Rows::Zero(static_cast<Index>(kChannels * veil_nodes_.size()), of_signal + 1);
-        light_water(scene, add_to(of_nodes));
-        add_between_nodes(of_nodes, all);
-    }
-    const Eigen::VectorXd without_lens = all.col(of_signal);
-    multiply_by_vignetting(state, all);
-
-    for (Index k = 0; k < count; ++k) {
-        const FitNumber& number = numbers[static_cast<std::size_t>(k)];
-        if (number.part == FitPart::Offset)
-            all.col(first_number + k) = all.col(of_pose + static_cast<Index>(number.which));
-        if (number.part == FitPart::FloorBrightness)
-            all.col(first_number + k) = all.col(of_floor) / state.floor_brightness;
-        for (Index row = 0; row < all.rows(); ++row) {
-            const auto at = static_cast<std::size_t>(row);
-            if (number.part == FitPart::Gain && at % kChannels == number.of)
-                all(row, first_number + k) = all(row, of_signal) / state.gain[number.of];
-            if (number.part == FitPart::LensFactor) {
-                all(row, first_number + k) =
-                    without_lens(row) * std::pow(sights_[at / kChannels].from_middle2,
-                                                 static_cast<double>(number.which + 1));
-            }
-        }
-    }
-    average_over_blocks(all);
+template <typename Use>
+void FitLight::for_each_way(const Use& use) const {
+    for (const Sight& sight : sights_)
+        for (const WaterRay& ray : sight.rays)
+            for (const Strobe& strobe : rig_.strobes) use(ray, strobe);
 }
 
 PathRange FitLight::paths(const std::vector<Sled>& sleds) const {
     constexpr double kRoom = 1.2;  // for offsets of the altitude
     PathRange range{.shortest_m = std::numeric_limits<double>::infinity(), .longest_m = 0.0};
     for (const Sled& sled : sleds) {
-        const Floor floor = floor_of(sled);
-        for (const Place& sight : sights_) {
-            for (const WaterRay& ray : sight.rays) {
-                const std::optional<Landing> landing = landing_of(floor, ray);
-                if (!landing) continue;
-                for (const Strobe& strobe : rig_.strobes) {
-                    const Vector3d seen_m = ray.origin_m + landing->length_m * ray.direction;
-                    const double path_m = landing->length_m + (seen_m - strobe.position_m).norm();
-                    range.longest_m = std::max(range.longest_m, kRoom * path_m);
-                    range.shortest_m =
-                        std::min(range.shortest_m,
-                                 rig_.water.scatters() ? (strobe.position_m - ray.origin_m).norm()
-                                                       : path_m / kRoom);
-                }
-            }
-        }
+        const Plane floor = floor_plane(sled);
+        for_each_way([&](const WaterRay& ray, const Strobe& strobe) {
+            const auto length_m = distance_to(floor, ray);
+            if (!length_m) return;
+            const Vector3d seen_m = ray.origin_m + *length_m * ray.direction;
+            const double path_m = *length_m + (seen_m - strobe.position_m).norm();
+            range.longest_m = std::max(range.longest_m, kRoom * path_m);
+            range.shortest_m = std::min(
+                range.shortest_m,
+                rig_.water.scatters() ? (strobe.position_m - ray.origin_m).norm() : path_m / kRoom);
+        });
     }
     range.shortest_m = std::min(range.shortest_m, range.longest_m);
     return range;
@@ -714,26 +547,21 @@ double FitLight::block_rad() const {
     const double nm = 0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm);
     const Vector3d one = pixel_ray(rig_, column, row, nm).direction;
     const Vector3d other = pixel_ray(rig_, column + 0.5 * places_.block_px, row, nm).direction;
-    return 2.0 * std::acos(std::min(1.0, one.dot(other)));
+    return 2.0 * angle_between(one, other);
 }
 
 double FitLight::widest_rad(const std::vector<Sled>& sleds) const {
     double widest_rad = 0.0;
     for (const Sled& sled : sleds) {
-        const Floor floor = floor_of(sled);
-        for (const Place& sight : sights_) {
-            for (const WaterRay& ray : sight.rays) {
-                const std::optional<Landing> landing = landing_of(floor, ray);
-                if (!landing) continue;
-                const Vector3d seen_m = ray.origin_m + landing->length_m * ray.direction;
-                for (const Strobe& strobe : rig_.strobes) {
-                    widest_rad = std::max(widest_rad,
-                                          angle_between(strobe.axis, seen_m - strobe.position_m));
-                }
-            }
-        }
+        const Plane floor = floor_plane(sled);
+        for_each_way([&](const WaterRay& ray, const Strobe& strobe) {
+            const auto length_m = distance_to(floor, ray);
+            if (!length_m) return;
+            const Vector3d seen_m = ray.origin_m + *length_m * ray.direction;
+            widest_rad =
+                std::max(widest_rad, angle_between(strobe.axis, seen_m - strobe.position_m));
+        });
     }
-    widest_rad += kAimRoom_rad + (rig_.water.scatters() ? kVeilRoom_rad : 0.0);
     return std::min(widest_rad, 0.5 * pi);
 }
 

@@ -7,6 +7,7 @@
 #include "report/html.h"
 #include "report/page.h"
 #include "report/svg.h"
+#include "survey/fit/fit_check.h"
 
 #include <fmt/format.h>
 
@@ -20,24 +21,46 @@
 namespace aphotic {
 namespace {
 
-constexpr double kShownResidual = 0.1;  // at which a residual has its full colour
+constexpr double kShownPattern = 0.05;  // at which a pattern has its full colour
 
-std::string number_text(double value) {
-    return scientific(value);
+std::string percent(double share) {
+    return fmt::format("{:.2g}\xC2\xA0%", 100.0 * share);
 }
 
-std::string altitudes_of(const FitSamples& samples) {
-    const auto by_altitude = [](const FitImage& image) { return image.sled.altitude_m; };
-    const auto [lowest, highest] = std::ranges::minmax(samples.images, {}, by_altitude);
-    return fmt::format("{:.3g} to {:.3g}", lowest.sled.altitude_m, highest.sled.altitude_m);
+// To as many digits as its error earns: two of the error's.
+std::string with_error(double value, double error) {
+    const int digits =
+        error > 0.0 ? std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))) : 4;
+    return fmt::format("{:.{}f} \xC2\xB1 {:.{}f}", value, digits, error, digits);
 }
 
 std::string headline(const FitResult& result) {
     std::string words = words_of(result);
-    if (!result.held.empty()) words += ", " + grouped_count(result.held.size(), "number") + " held";
+    const auto open = std::ranges::count(result.numbers, false, &FittedNumber::is_determined);
+    if (open > 0)
+        words += fmt::format(", {} not determined",
+                             grouped_count(static_cast<std::size_t>(open), "number"));
     if (!result.looks_wrong.empty())
         words += ", " + grouped_count(result.looks_wrong.size(), "warning");
     return words;
+}
+
+std::vector<std::string> verdict(const FitResult& result) {
+    const FitPattern& pattern = result.pattern;
+    const bool is_chance = pattern.whitened <= 1.0 + kPatternSigmas * pattern.chance;
+    return {fmt::format("Correction by this rig is expected to be even to {}: the error of its "
+                        "light over this flight, but for a mean floor's level. That does not count "
+                        "what the rig does not know, such as a veil that its water lacks, or "
+                        "another lens. {} of the signal is veil.",
+                        percent(result.unevenness),
+                        percent(result.veil_share)),
+            is_chance ? fmt::format("What stays in place from image to image, {} of the light, is "
+                                    "no more than the floor's texture makes by chance.",
+                                    percent(pattern.rms))
+                      : fmt::format("What stays in place from image to image, {} of the light, is "
+                                    "more than the floor's texture makes by chance, {}.",
+                                    percent(pattern.rms),
+                                    percent(pattern.by_chance))};
 }
 
 std::vector<std::string> warnings(const FitResult& result) {
@@ -48,17 +71,19 @@ std::vector<std::string> warnings(const FitResult& result) {
 }
 
 std::vector<PagePart> numbers(const FitResult& result) {
-    PageTable table{.columns = {"number", "began at", "fitted", "standard error", ""}};
+    PageTable table{.columns = {"number", "the rig had", "expected within", "fitted", ""}};
+    std::vector<PagePart> open;
     for (const FittedNumber& one : result.numbers) {
+        if (is_curve(one)) continue;
         table.rows.push_back({.cells = {one.key,
                                         plain(one.start),
-                                        plain(one.value),
-                                        number_text(one.error),
-                                        one.is_at_bound ? "at the end of its range" : ""},
-                              .tone = one.is_at_bound ? PageTone::Bad : PageTone::None});
+                                        fmt::format("\xC2\xB1 {:.2g}", one.spread),
+                                        with_error(one.value, one.error),
+                                        one.is_determined ? "" : "not determined"}});
+        if (!one.is_determined) open.emplace_back(words_of(one) + ".");
     }
     std::vector<PagePart> parts{std::move(table)};
-    for (const NotTold& one : result.held) parts.emplace_back("Held: " + words_of(one) + ".");
+    parts.insert(parts.end(), open.begin(), open.end());
     if (!result.fixed.empty())
         parts.emplace_back(
             fmt::format("Not fitted, as the rig has them: {}.", fmt::join(result.fixed, ", ")));
@@ -75,10 +100,9 @@ std::vector<PagePart> confounded(const FitResult& result) {
     return {"Pairs that nearly make up for each other.", std::move(table)};
 }
 
-// Blue where the image is darker than the fit, red where it is brighter.
-std::uint32_t residual_colour(float residual) {
-    if (!std::isfinite(residual)) return 0x808080;
-    const double share = std::clamp(static_cast<double>(residual) / kShownResidual, -1.0, 1.0);
+// Blue where images are darker than the fit, red where they are brighter.
+std::uint32_t pattern_colour(float off) {
+    const double share = std::clamp(static_cast<double>(off) / kShownPattern, -1.0, 1.0);
     const auto level = [](double value) {
         return static_cast<std::uint32_t>(std::lround(255.0 * value));
     };
@@ -90,34 +114,40 @@ std::uint32_t residual_colour(float residual) {
 }
 
 std::vector<PagePart> views(const FitSamples& samples, const FitResult& result) {
-    const int width_px = samples.places.width_px / samples.places.block_px;
-    const int height_px = static_cast<int>(samples.places.size()) / width_px;
+    const int width_px = static_cast<int>(samples.places.across());
+    const int height_px = static_cast<int>(samples.places.down());
+    const auto shown = [&](std::string png, std::string words) {
+        return PagePicture{.bytes = std::move(png),
+                           .width_px = width_px,
+                           .height_px = height_px,
+                           .words = std::move(words)};
+    };
     PageFigures figures{.figures = {}, .are_small = true};
-    for (const FitView& view : result.left.views) {
+    for (const FitView& view : result.views) {
         const CameraImage fitted{width_px, height_px, view.fitted};
         const auto scale = preview_scale(fitted, {1.0, 1.0, 1.0}, {.white = PreviewWhite::Image});
-        std::vector<std::uint32_t> colours;
-        for (const float residual : view.residual) colours.push_back(residual_colour(residual));
-        const auto shown = [&](std::string png, std::string words) {
-            return PagePicture{.bytes = std::move(png),
-                               .width_px = width_px,
-                               .height_px = height_px,
-                               .words = std::move(words)};
-        };
         figures.figures.push_back(
             {.pictures = {shown(preview_png({width_px, height_px, view.observed}, scale),
                                 "observed"),
-                          shown(preview_png(fitted, scale), "fitted"),
-                          shown(png_of(colours, width_px, height_px), "what is left")},
+                          shown(preview_png(fitted, scale), "fitted")},
              .caption = fmt::format("{}, {:.2f}\xC2\xA0m",
                                     named(samples.images[view.image].name),
                                     samples.images[view.image].sled.altitude_m)});
     }
-    return {fmt::format("Observed, fitted, and what is left: red brighter, blue darker than the "
-                        "fit, in full colour from {:.0f} % on. Each block is {} pixels wide.",
-                        100.0 * kShownResidual,
+    std::vector<std::uint32_t> colours;
+    for (const float off : result.pattern.logarithm) colours.push_back(pattern_colour(off));
+    PageFigures pattern{
+        .figures = {{.pictures = {shown(png_of(colours, width_px, height_px), "pattern")},
+                     .caption = "what stays in place"}},
+        .are_small = true};
+    return {fmt::format("Images as they were observed, in blocks of {} pixels, and as the fitted "
+                        "rig makes them of an even floor.",
                         samples.places.block_px),
-            std::move(figures)};
+            std::move(figures),
+            fmt::format("What all images have in common that the fit does not make: red brighter, "
+                        "blue darker, in full colour from {:.0f} % on.",
+                        100.0 * kShownPattern),
+            std::move(pattern)};
 }
 
 constexpr double kWidth = 760.0;
@@ -170,44 +200,31 @@ std::vector<PagePart> beams(const FitResult& result) {
 
 std::vector<PagePart> over_altitude(const FitResult& result) {
     std::vector<double> altitude_m;
-    std::vector<double> residual;
-    std::vector<double> level;
+    std::vector<double> brightness;
     ValueRange x;
     ValueRange y;
-    for (const ImageOutcome& image : result.left.images) {
+    for (const ImageOutcome& image : result.images) {
         altitude_m.push_back(image.sled.altitude_m);
-        residual.push_back(image.residual);
-        level.push_back(image.level);
+        brightness.push_back(std::exp(image.brightness));
         x.include(altitude_m.back());
-        y.include(residual.back());
-        y.include(level.back());
+        y.include(brightness.back());
     }
     if (!(x.most > x.least)) return {};
     y.include(0.0);
     SvgPanel panel = panel_over(x, y);
     panel.x.title = "altitude [m]";
-    panel.y.title = "share of the signal";
-    const std::string dots = "class=\"dots\" style=\"stroke-width: 6px\" ";
-    const std::string drawing = svg_axes(panel) +
-                                svg_dots(panel, altitude_m, residual, dots + svg_tone(0)) +
-                                svg_dots(panel, altitude_m, level, dots + svg_tone(1));
+    panel.y.title = "the floor's brightness, 1 on average";
+    const std::string dots = "class=\"dots\" style=\"stroke-width: 6px\" " + svg_tone(0);
     return {
-        "Blue: what is left of an image, rms. Red: how much brighter the image is than its pose "
-        "explains; that should not go with the altitude.",
-        PagePlot{svg_drawing("residuals", "residuals over altitude", kWidth, kHeight, drawing)}};
-}
-
-std::vector<PagePart> deviations(const FitResult& result) {
-    const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
-    PageList items{{"brightness", number_text(deviation(0))},
-                   {"red and blue beside green",
-                    fmt::format("{}, {}", number_text(deviation(1)), number_text(deviation(2)))},
-                   {"altitude", fmt::format("{} m", number_text(deviation(3)))},
-                   {"pitch, roll",
-                    fmt::format("{}, {} degrees",
-                                number_text(deviation(4) * kDegreesPerRadian),
-                                number_text(deviation(5) * kDegreesPerRadian))}};
-    return {"Standard deviations of what the images are off by, each its own.", std::move(items)};
+        fmt::format("How bright the floor of each image is, by the fitted light. Floors differ; "
+                    "these do by {}, and neighbouring blocks by {}.",
+                    percent(result.level_spread),
+                    percent(result.texture)),
+        PagePlot{svg_drawing("brightness",
+                             "the floor's brightness over altitude",
+                             kWidth,
+                             kHeight,
+                             svg_axes(panel) + svg_dots(panel, altitude_m, brightness, dots))}};
 }
 
 }  // namespace
@@ -223,19 +240,15 @@ void write_fit_page(const std::filesystem::path& file,
         .heading = title,
         .is_good = result.looks_wrong.empty(),
         .headline = headline(result),
-        .said = {fmt::format("Of {} at {} m it leaves {} (rms, relative), of which {} stays in "
-                             "place from image to image: what the model lacks.",
-                             grouped_count(result.blocks, "block"),
-                             altitudes_of(samples),
-                             number_text(result.left.residual),
-                             number_text(result.left.pattern))},
+        .said = verdict(result),
         .warnings = warnings(result),
         .sections = {
             {.id = "numbers", .heading = "What was found", .parts = numbers(result)},
             {.id = "views", .heading = "Observed and fitted", .parts = views(samples, result)},
             {.id = "beams", .heading = "Beam", .parts = beams(result)},
-            {.id = "altitude", .heading = "Over altitude", .parts = over_altitude(result)},
-            {.id = "deviations", .heading = "From image to image", .parts = deviations(result)},
+            {.id = "altitude",
+             .heading = "The floor over altitude",
+             .parts = over_altitude(result)},
             {.id = "confounded", .heading = "Confounded", .parts = confounded(result)},
             {.id = "rig",
              .heading = "The rig that it began with",

@@ -11,355 +11,375 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <cmath>
 #include <string_view>
+#include <variant>
 
 namespace aphotic {
 namespace {
 
-struct WaterBounds {
-    const char* key;
-    double absent;  // where the rig does not tell it
-    double least;
-    double most;
-    double plausible;  // and no less than its value
+using Eigen::Index;
+
+constexpr double kTurn = 0.8;  // the most that an aim is off [rad]
+
+// What is asked for by one word, and what is known of it beforehand.
+struct Word {
+    std::string_view name;
+    double spread;  // in the key's unit, or of the logarithm
+    bool is_by_default;
 };
-constexpr std::array<WaterBounds, 2> kWaterNumbers{
-    {{"multiple", 1.0, 0.0, 1e3, 0.3}, {"uniform_loss_per_m", 0.0, 0.0, 1e2, 0.1}}};
-// Chlorophyll: what the reader allows, and room for differences.
-constexpr std::array<WaterBounds, 3> kCase1Numbers{{{"chlorophyll_mg_m3", 1.0, 0.0202, 29.8, 0.3},
-                                                    {"cdom_440_per_m", 0.0, 0.0, 1e2, 0.05},
-                                                    {"particles", 1.0, 0.0, 1e2, 0.3}}};
+constexpr std::array<Word, 9> kWords{{{"beam", kShapeSpread, true},
+                                      {"aim", 2.0, true},
+                                      {"power", 0.1, true},
+                                      {"water", 0.3, true},
+                                      {"vignetting", 1.5, true},
+                                      {"floor", 0.5, true},
+                                      {"tint", 0.5, true},
+                                      {"altitude", 0.1, false},
+                                      {"attitude", 2.0, false}}};
+constexpr double kRadialSpread = 0.3;
+constexpr double kLossSpread_per_m = 0.05;
+constexpr double kMostCosine = 50.0;
+constexpr double kUsualCosine = 3.0;  // of a lens that the rig says nothing of
 
-// What is asked for by one word each.
-constexpr std::array kWords{
-    "beam", "aim", "power", "water", "vignetting", "floor", "altitude", "attitude", "gain"};
-constexpr std::size_t kByDefault = 6;
-
-// Of keys that may be asked for by themselves: what is in them, and the word that they are part of.
-struct KeyOfWord {
-    std::string_view within;
-    std::string_view word;
-};
-constexpr std::array<KeyOfWord, 8> kKeys{{{".aim_a", "aim"},
-                                          {".power", "power"},
-                                          {"camera.vignetting.a", "vignetting"},
-                                          {"floor.brightness", "floor"},
-                                          {"sled.altitude_offset_m", "altitude"},
-                                          {"camera.pitch_offset_deg", "attitude"},
-                                          {"camera.roll_offset_deg", "attitude"},
-                                          {"gain.", "gain"}}};
-
-std::string_view word_with(std::string_view key) {
-    for (const auto& [within, word] : kKeys)
-        if (key.find(within) != std::string_view::npos) return word;
-    return {};
+const Word& word_named(std::string_view name) {
+    return *std::ranges::find(kWords, name, &Word::name);
 }
 
-// By the word, or by a key that is part of it.
-bool is_asked(const FitOptions& options, const std::string& word) {
-    if (!options.free)
-        return std::find(kWords.begin(), kWords.begin() + kByDefault, word) !=
-               kWords.begin() + kByDefault;
-    return std::ranges::any_of(*options.free, [&](const std::string& asked) {
-        return asked == word || word_with(asked) == word;
-    });
+bool has(const std::vector<std::string>& list, std::string_view word) {
+    return std::ranges::find(list, word) != list.end();
 }
 
-void require_known(const FitOptions& options, const Rig& rig) {
-    for (const std::string& word : options.free.value_or(std::vector<std::string>{})) {
-        if (std::ranges::find(kWords, word) != kWords.end() || word.starts_with("water.") ||
-            !word_with(word).empty())
-            continue;
-        throw InputError(
-            "--free: found '{}'; allowed: {}, or one number by its key, as water.multiple",
-            word,
-            fmt::join(kWords, ", "));
-    }
-    if (options.free && is_asked(options, "floor") && !rig.water.scatters()) {
-        throw InputError(
-            "--free: found floor in water that does not scatter; allowed: without it, for only the "
-            "veil tells how bright the floor is");
-    }
-}
+class Problem {
+  public:
+    Problem(const RigText& text, const FitOptions& options)
+        : text_(text), rig_(text.rig()), options_(options) {}
 
-bool is_case_1(const RigText& rig) {
-    return rig.has("water.chlorophyll_mg_m3");
-}
-
-// The water's numbers, which the state holds whether they are free or not.
-void add_water(const RigText& text,
-               const Rig& rig,
-               const FitOptions& options,
-               FitState& state,
-               std::vector<FreeNumber>& free) {
-    std::vector<std::string> known;
-    const auto add = [&](const WaterBounds& bounds, bool is_free) {
-        const std::string key = fmt::format("water.{}", bounds.key);
-        known.push_back(key);
-        const double value = text.number(key).value_or(bounds.absent);
-        if (is_free) {
-            free.push_back({.number = {FitPart::Water, state.water.size(), 0},
-                            .key = key,
-                            .plausible = std::max(bounds.plausible, 0.5 * value),
-                            .least = bounds.least,
-                            .most = bounds.most,
-                            .group = "water"});
-            state.water.push_back({.key = key, .value = value});
+    FitProblem of(double widest_rad, double block_rad) {
+        for (const Strobe& strobe : rig_.strobes) {
+            state_.power.push_back(strobe.power);
+            state_.aim_rad.push_back({0.0, 0.0});
         }
-    };
-    const auto by_itself = [&](const char* key) {
-        return options.free && std::ranges::find(*options.free, fmt::format("water.{}", key)) !=
-                                   options.free->end();
-    };
-    if (is_case_1(text)) {
-        for (WaterBounds bounds : kCase1Numbers) {
-            // What the reader takes where cdom is not told.
-            if (std::string_view(bounds.key) == "cdom_440_per_m")
-                bounds.absent = case_1_cdom_440_per_m(*text.number("water.chlorophyll_mg_m3"));
-            add(bounds, is_asked(options, "water") || by_itself(bounds.key));
-        }
-    } else {
-        const bool is_all = is_asked(options, "water") && rig.water.multiple > 0.0;
-        add(kWaterNumbers[0], is_all || by_itself("multiple"));
+        add_beams(widest_rad, block_rad);
+        add_strobes();
+        add_water();
+        add_floor();
+        add_vignetting();
+        add_offsets();
+        require_known();
+        require_fitted();
+        return with_priors();
     }
-    add(kWaterNumbers[1], by_itself("uniform_loss_per_m"));
-    for (const std::string& word : options.free.value_or(std::vector<std::string>{})) {
-        if (!word.starts_with("water.") || std::ranges::find(known, word) != known.end()) continue;
-        throw InputError(
-            "--free: found '{}'; allowed of this water: {}", word, fmt::join(known, ", "));
-    }
-}
 
-// Strobes of like beams share one, unless each is to have its own.
-void add_beams(const Rig& rig,
-               const FitOptions& options,
-               const FitAngles& angles,
-               FitState& state,
-               std::vector<FreeNumber>& free) {
-    std::vector<std::string> signatures;
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        const Beam& beam = rig.strobes[s].beam;
-        const std::string signature =
-            options.has_beam_each ? fmt::format("{}", s) : beam_signature(beam);
-        const auto same = std::ranges::find(signatures, signature);
-        state.beam_of.push_back(static_cast<std::size_t>(same - signatures.begin()));
-        if (same != signatures.end()) continue;
-        signatures.push_back(signature);
-        const std::string name = rig.strobes[s].name;
-        if (!is_asked(options, "beam")) {
-            state.beams.push_back(FitBeam::held(beam));
-        } else if (options.beam == FitBeamKind::Table) {
-            state.beams.push_back(
-                FitBeam::table(options.parts.value_or(kMostParts), angles.widest_rad));
-        } else if (options.beam == FitBeamKind::Cones) {
-            state.beams.push_back(FitBeam::cones(beam, angles.block_rad));
-        } else if (options.beam == FitBeamKind::Cosine) {
-            state.beams.push_back(
-                FitBeam::cosine(beam.cones.empty() ? 1.0 : beam.cones.front().exponent));
+  private:
+    // Asked for by its word or its key, and not held.
+    [[nodiscard]] bool is_free(std::string_view word, const std::string& key) const {
+        if (has(options_.hold, word) || has(options_.hold, key)) return false;
+        // The floor's colour is free unless it is held: nobody knows it.
+        if (word == "tint" || !options_.free) return word_named(word).is_by_default;
+        return has(*options_.free, word) || has(*options_.free, key);
+    }
+
+    void add(std::string_view word, FitNumber number) {
+        known_.push_back(number.key);
+        if (!is_free(word, number.key)) return;
+        number.word = word;
+        const auto told = [&](std::string_view name) {
+            const auto at = options_.priors.find(std::string(name));
+            // Relative, or in the key's unit.
+            if (at != options_.priors.end())
+                number.spread = number.is_log ? at->second : at->second / number.per_unit;
+        };
+        told(word);
+        told(number.key);
+        constexpr double kFarthest = 20.0;  // spreads, where nothing else bounds it
+        if (number.least == number.most) {
+            number.least = -kFarthest * number.spread;
+            number.most = kFarthest * number.spread;
+        }
+        number.start = number_in(state_, number.at);
+        numbers_.push_back(number);
+    }
+
+    // Strobes of like beams share one, unless each is to have its own.
+    void add_beams(double widest_rad, double block_rad) {
+        std::vector<std::string> signatures;
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            const Beam& beam = rig_.strobes[s].beam;
+            const std::string signature =
+                options_.has_beam_each ? fmt::format("{}", s) : beam_signature(beam);
+            const auto same = std::ranges::find(signatures, signature);
+            const auto b = static_cast<std::size_t>(same - signatures.begin());
+            state_.beam_of.push_back(b);
+            if (same != signatures.end()) continue;
+            signatures.push_back(signature);
+            const std::string key = fmt::format("strobe.{}.beam", rig_.strobes[s].name);
+            const FitBeamKind kind = is_free("beam", key) ? options_.beam : FitBeamKind::Held;
+            const FitBeam& made =
+                state_.beams.emplace_back(kind, beam, widest_rad + kAimRoom_rad, block_rad);
+            const std::vector<std::string> names = made.names();
+            for (std::size_t k = 0; k < made.coefficients().size(); ++k) {
+                FitNumber number{.at = {FitPart::Beam, b, k}, .key = key};
+                number.word = "beam";
+                number.start = made.coefficients()[k];
+                if (!names.empty()) number.spread = kShapeSpread;
+                number.least = -kFarthestCoefficient;
+                number.most = kFarthestCoefficient;
+                number.is_shown_exp = !names.empty();
+                number.per_unit = kind == FitBeamKind::Optics ? kMillimetres : 1.0;
+                number.key += names.empty() ? fmt::format(".ln_{}", k) : "." + names[k];
+                numbers_.push_back(number);
+            }
+            known_.push_back(key);
+        }
+    }
+
+    void add_strobes() {
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            const std::string key = "strobe." + rig_.strobes[s].name;
+            for (std::size_t k = 0; k < 2; ++k) {
+                add("aim",
+                    {.at = {FitPart::Aim, s, k},
+                     .key = fmt::format("{}.aim_{}_deg", key, k == 0 ? "along" : "across"),
+                     .spread = word_named("aim").spread * kRadiansPerDegree,
+                     .per_unit = kDegreesPerRadian,
+                     .least = -kTurn,
+                     .most = kTurn});
+            }
+            if (state_.power[s] <= 0.0) continue;
+            add("power",
+                {.at = {FitPart::Power, s},
+                 .key = key + ".power",
+                 .spread = word_named("power").spread,
+                 .is_log = true});
+        }
+    }
+
+    void add_water() {
+        const auto one = [&](const char* name, double absent, double least, double most) {
+            const std::string key = fmt::format("water.{}", name);
+            const double value = text_.number(key).value_or(absent);
+            state_.water.push_back({.key = key, .value = value});
+            FitNumber number{.at = {FitPart::Water, state_.water.size() - 1}, .key = key};
+            // What is 0 may be more, by no factor.
+            number.is_log = value > 0.0;
+            number.spread = number.is_log ? word_named("water").spread : kLossSpread_per_m;
+            number.least = number.is_log ? std::log(least / value) : 0.0;
+            number.most = number.is_log ? std::log(most / value) : most;
+            const std::size_t had = numbers_.size();
+            add("water", number);
+            if (numbers_.size() == had) state_.water.pop_back();
+        };
+        if (const auto chlorophyll = text_.number("water.chlorophyll_mg_m3")) {
+            // What the reader allows, and room for differences.
+            one("chlorophyll_mg_m3", 1.0, 0.0202, 29.8);
+            one("cdom_440_per_m", case_1_cdom_440_per_m(*chlorophyll), 1e-6, 1e2);
+            one("particles", 1.0, 1e-3, 1e2);
+        } else if (rig_.water.multiple > 0.0) {
+            one("multiple", 1.0, 1e-3, 1e3);
+        }
+        if (options_.free && has(*options_.free, "water.uniform_loss_per_m"))
+            one("uniform_loss_per_m", 0.0, 1e-6, 1e2);
+    }
+
+    void add_floor() {
+        if (rig_.water.scatters()) {
+            add("floor",
+                {.at = {FitPart::Brightness},
+                 .key = "floor.brightness",
+                 .spread = word_named("floor").spread,
+                 .is_log = true,
+                 .least = std::log(kDarkest),
+                 .most = -std::log(std::ranges::max(rig_.seafloor.reflectance.values()))});
+        } else if (options_.free && has(*options_.free, "floor")) {
+            throw InputError(
+                "--free: found floor in water that does not scatter; allowed: without it, for only "
+                "the veil tells how bright the floor is");
+        }
+        if (rig_.camera.sensor.is_mono()) return;
+        for (std::size_t k = 0; k < 2; ++k) {
+            add("tint",
+                {.at = {FitPart::Tint, 0, k},
+                 .key = k == 0 ? "floor.redness" : "floor.bend",
+                 .spread = word_named("tint").spread});
+        }
+    }
+
+    void add_vignetting() {
+        const auto& lens = rig_.camera.vignetting;
+        const bool is_radial = options_.has_radial_vignetting.value_or(
+            lens && !std::holds_alternative<NaturalVignetting>(*lens));
+        const std::size_t had = numbers_.size();
+        if (is_radial) {
+            const RadialVignetting radial = radial_like(rig_.camera);
+            state_.vignetting.assign(radial.a.begin(), radial.a.end());
         } else {
-            state.beams.push_back(FitBeam::optics(beam));
+            const auto* natural = lens ? std::get_if<NaturalVignetting>(&*lens) : nullptr;
+            state_.vignetting = {natural != nullptr ? natural->exponent : kUsualCosine};
         }
-        const FitBeam& made = state.beams.back();
-        for (std::size_t k = 0; k < made.shapes().size(); ++k) {
-            const double shape = made.shapes()[k];
-            free.push_back({.number = {FitPart::BeamShape, state.beams.size() - 1, k},
-                            .key = fmt::format("strobe.{}.beam.{}", name, made.shape_names()[k]),
-                            .plausible = std::max(0.3 * shape, 1e-3),
-                            .least = 0.05 * shape,
-                            .most = 50.0 * std::max(shape, 1e-3),
-                            .per_unit = made.kind() == FitBeamKind::Optics ? kMillimetres : 1.0,
-                            .group = "beam"});
+        for (std::size_t k = 0; k < state_.vignetting.size(); ++k) {
+            FitNumber number{.at = {FitPart::Lens, 0, k},
+                             .key = fmt::format("camera.vignetting.a{}", k + 1),
+                             .spread = kRadialSpread};
+            if (!is_radial) {
+                number.key = "camera.vignetting.cosine";
+                number.spread = word_named("vignetting").spread;
+                number.least = -state_.vignetting.front();  // a rig's is 0 to kMostCosine
+                number.most = kMostCosine - state_.vignetting.front();
+            }
+            add("vignetting", number);
         }
+        if (numbers_.size() == had) state_.vignetting.clear();
     }
-}
 
-void add_strobes(const Rig& rig,
-                 const FitOptions& options,
-                 FitState& state,
-                 std::vector<FreeNumber>& free) {
-    constexpr double kMostTurn_rad = 0.8;
-    std::set<std::size_t> seen;  // beams whose first strobe has the power 1
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        const std::string& name = rig.strobes[s].name;
-        for (std::size_t k = 0; k < 2 && is_asked(options, "aim"); ++k) {
-            free.push_back(
-                {.number = {FitPart::Aim, s, k},
-                 .key = fmt::format("strobe.{}.aim_{}_deg", name, k == 0 ? "along" : "across"),
-                 .plausible = 10.0 * kRadiansPerDegree,
-                 .least = -kMostTurn_rad,
-                 .most = kMostTurn_rad,
-                 .per_unit = kDegreesPerRadian,
-                 .group = "aim"});
+    void add_offsets() {
+        add("altitude",
+            {.at = {FitPart::Offset},
+             .key = "sled.altitude_offset_m",
+             .spread = word_named("altitude").spread});
+        for (std::size_t k = 1; k <= 2; ++k) {
+            add("attitude",
+                {.at = {FitPart::Offset, 0, k},
+                 .key = k == 1 ? "camera.pitch_offset_deg" : "camera.roll_offset_deg",
+                 .spread = word_named("attitude").spread * kRadiansPerDegree,
+                 .per_unit = kDegreesPerRadian});
         }
-        // One that is off is no reference for the others.
-        if (state.power[s] <= 0.0) continue;
-        const bool is_first = seen.insert(state.beam_of[s]).second;
-        if (is_first || !is_asked(options, "power")) continue;
-        free.push_back({.number = {FitPart::Power, s, 0},
-                        .key = fmt::format("strobe.{}.power", name),
-                        .plausible = 0.5 * state.power[s],
-                        .least = 1e-3 * state.power[s],
-                        .most = 1e3 * state.power[s],
-                        .group = "power"});
     }
-}
 
-void add_camera(const Rig& rig,
-                const FitOptions& options,
-                FitState& state,
-                std::vector<FreeNumber>& free) {
-    if (is_asked(options, "vignetting")) {
-        const RadialVignetting radial = radial_like(rig.camera);
-        state.vignetting.assign(radial.a.begin(), radial.a.end());
-        for (std::size_t k = 0; k < state.vignetting.size(); ++k) {
-            free.push_back({.number = {FitPart::LensFactor, 0, k},
-                            .key = fmt::format("camera.vignetting.a{}", k + 1),
-                            .plausible = 0.5,
-                            .group = "vignetting"});
-        }
+    void require_known() const {
+        const auto require = [&](const char* option, const std::string& asked) {
+            if (std::ranges::count(kWords, asked, &Word::name) > 0 || has(known_, asked)) return;
+            std::vector<std::string_view> words;
+            for (const Word& word : kWords) words.push_back(word.name);
+            throw InputError("{}: found '{}'; allowed: {}, or one number by its key: {}",
+                             option,
+                             asked,
+                             fmt::join(words, ", "),
+                             fmt::join(known_, ", "));
+        };
+        for (const std::string& asked : options_.free.value_or(std::vector<std::string>{}))
+            require("--free", asked);
+        for (const std::string& asked : options_.hold) require("--hold", asked);
+        for (const auto& [asked, spread] : options_.priors) require("--prior", asked);
     }
-    constexpr double kMostTilt_rad = 0.5;
-    if (is_asked(options, "altitude")) {
-        free.push_back({.number = {FitPart::Offset, 0, 0},
-                        .key = "sled.altitude_offset_m",
-                        .plausible = 0.2,
-                        .least = -0.3 * rig.sled.altitude_m,
-                        .most = 0.3 * rig.sled.altitude_m,
-                        .group = "altitude"});
-    }
-    for (std::size_t k = 1; k <= 2 && is_asked(options, "attitude"); ++k) {
-        free.push_back({.number = {FitPart::Offset, 0, k},
-                        .key = k == 1 ? "camera.pitch_offset_deg" : "camera.roll_offset_deg",
-                        .plausible = 3.0 * kRadiansPerDegree,
-                        .least = -kMostTilt_rad,
-                        .most = kMostTilt_rad,
-                        .per_unit = kDegreesPerRadian,
-                        .group = "attitude"});
-    }
-    if (rig.water.scatters() && is_asked(options, "floor")) {
-        constexpr double kDarkest = 0.02;  // times the rig's; the brightest reflects all
-        free.push_back({.number = {FitPart::FloorBrightness, 0, 0},
-                        .key = "floor.brightness",
-                        .plausible = 0.7,
-                        .least = kDarkest,
-                        .most = 1.0 / std::ranges::max(rig.seafloor.reflectance.values()),
-                        .group = "floor"});
-    }
-    if (rig.camera.sensor.is_mono()) return;
-    if (!is_asked(options, "gain")) {
-        for (std::size_t k = 0; k < state.floor.size(); ++k) {
-            free.push_back({.number = {FitPart::FloorColour, 0, k},
-                            .key = k == 0 ? "floor.redness" : "floor.bend",
-                            .plausible = 1.0,
-                            .group = kFloorColour});
-        }
-        return;
-    }
-    for (const std::size_t c : {std::size_t{0}, std::size_t{2}}) {
-        free.push_back({.number = {FitPart::Gain, c, 0},
-                        .key = fmt::format("gain.{}", kChannelNames[c]),
-                        .plausible = 1e3,
-                        .least = 1e-6,
-                        .most = 1e6,
-                        .group = "gain"});
-    }
-}
 
-// Of a word that was not asked for as a whole, the numbers alone that were.
-void keep_those_asked(const FitOptions& options, FitProblem& problem) {
-    if (!options.free) return;
-    const auto has = [&](std::string_view word) {
-        return std::ranges::find(*options.free, word) != options.free->end();
-    };
-    for (const std::string& key : *options.free) {
-        const std::string_view word = word_with(key);
-        if (word.empty() || key.starts_with("water.") ||
-            std::ranges::count(problem.free, key, &FreeNumber::key) > 0)
-            continue;
-        std::vector<std::string> allowed;
-        for (const FreeNumber& one : problem.free)
-            if (one.group == word) allowed.push_back(one.key);
-        throw InputError("--free: found '{}'; allowed: {}", key, fmt::join(allowed, ", "));
+    // What is said of numbers is said of fitted ones.
+    void require_fitted() const {
+        const auto is_fitted = [&](std::string_view word) {
+            return std::ranges::any_of(numbers_, [&](const FitNumber& number) {
+                return number.word == word || number.key == word;
+            });
+        };
+        if (numbers_.empty())
+            throw InputError("{}: found nothing that is to be fitted; allowed: a word or a key",
+                             options_.free ? "--free" : "--hold");
+        if ((options_.beam != FitBeamKind::Table || options_.has_beam_each) && !is_fitted("beam"))
+            throw InputError(
+                "--beam: found with a beam that is not fitted; allowed: with beam free");
+        if (options_.has_radial_vignetting && !is_fitted("vignetting"))
+            throw InputError(
+                "--vignetting: found with a lens that is not fitted; allowed: with vignetting "
+                "free");
+        for (const auto& [asked, spread] : options_.priors) {
+            if (!is_fitted(asked))
+                throw InputError("--prior: found '{}', which is not fitted; allowed: what is free",
+                                 asked);
+            if (!(spread > 0.0) || !std::isfinite(spread))
+                throw InputError(
+                    "--prior: found {} of {}; allowed: a standard deviation over 0", spread, asked);
+        }
     }
-    std::erase_if(problem.free, [&](const FreeNumber& one) {
-        return !word_with(one.key).empty() && !has(one.group) && !has(one.key);
-    });
-}
+
+    FitProblem with_priors() {
+        const auto count = std::ssize(numbers_);
+        std::vector<Eigen::RowVectorXd> rows;
+        std::vector<double> means;
+        Index first = 0;
+        const auto told = options_.priors.find("beam");
+        const double as_told = told == options_.priors.end() ? 1.0 : kShapeSpread / told->second;
+        for (const FitBeam& beam : state_.beams) {
+            const BeamPrior& prior = beam.prior();
+            const auto coefficients = std::ssize(beam.coefficients());
+            const Eigen::VectorXd c =
+                Eigen::VectorXd::Map(beam.coefficients().data(), coefficients);
+            const Eigen::VectorXd r = coefficients > 0
+                                          ? Eigen::VectorXd(prior.means - prior.rows * c)
+                                          : Eigen::VectorXd();
+            for (Index k = 0; k < r.size(); ++k) {
+                Eigen::RowVectorXd& row = rows.emplace_back(Eigen::RowVectorXd::Zero(count));
+                row.segment(first, coefficients) = as_told * prior.rows.row(k);
+                means.push_back(as_told * r(k));
+            }
+            first += coefficients;
+        }
+        for (Index k = first; k < count; ++k) {
+            rows.emplace_back(Eigen::RowVectorXd::Zero(count))(k) =
+                1.0 / numbers_[static_cast<std::size_t>(k)].spread;
+            means.push_back(0.0);
+        }
+        FitProblem problem{
+            .start = state_, .numbers = numbers_, .prior_rows = {}, .prior_means = {}};
+        problem.prior_rows.resize(std::ssize(rows), count);
+        for (Index k = 0; k < std::ssize(rows); ++k)
+            problem.prior_rows.row(k) = rows[static_cast<std::size_t>(k)];
+        problem.prior_means = Eigen::VectorXd::Map(means.data(), std::ssize(means));
+        return problem;
+    }
+
+    // By how much an aim may be off before a beam's table ends within the image.
+    static constexpr double kAimRoom_rad = 0.15;
+    static constexpr double kFarthestCoefficient = 12.0;
+    static constexpr double kDarkest = 0.02;  // times the rig's floor; the brightest reflects all
+
+    const RigText& text_;
+    Rig rig_;
+    const FitOptions& options_;
+    FitState state_;
+    std::vector<FitNumber> numbers_;
+    std::vector<std::string> known_;
+};
 
 }  // namespace
 
-std::vector<FitNumber> FitProblem::numbers() const {
-    std::vector<FitNumber> all;
-    for (const FreeNumber& one : free) all.push_back(one.number);
-    return all;
+double FitNumber::value(double x) const {
+    return is_log ? start * std::exp(x) : start + x;
 }
 
-Eigen::VectorXd FitProblem::start() const {
-    Eigen::VectorXd x(static_cast<Eigen::Index>(free.size()));
-    std::ranges::transform(
-        free, x.begin(), [](const FreeNumber& one) { return one.start / one.plausible; });
-    return x;
+double FitNumber::slope(double x) const {
+    return is_log ? start * std::exp(x) : 1.0;
 }
 
-Eigen::VectorXd FitProblem::now() const {
-    FitState read = state;  // number_in() hands out what may be changed
-    Eigen::VectorXd x(static_cast<Eigen::Index>(free.size()));
-    std::ranges::transform(free, x.begin(), [&](const FreeNumber& one) {
-        return number_in(read, one.number) / one.plausible;
-    });
-    return x;
+double FitNumber::shown(double x) const {
+    return per_unit * (is_shown_exp ? std::exp(value(x)) : value(x));
 }
 
-Eigen::VectorXd FitProblem::plausible() const {
-    Eigen::VectorXd scale(static_cast<Eigen::Index>(free.size()));
-    std::ranges::transform(free, scale.begin(), &FreeNumber::plausible);
-    return scale;
+double FitNumber::shown_slope(double x) const {
+    return is_shown_exp ? shown(x) : per_unit * slope(x);
 }
 
-Eigen::VectorXd values_of(const Eigen::VectorXd& shares, const FitProblem& problem) {
-    Eigen::VectorXd all(shares.size() + static_cast<Eigen::Index>(problem.free.size()));
-    all << shares, problem.now().cwiseProduct(problem.plausible());
-    return all;
+FitState FitProblem::state_at(const Eigen::VectorXd& x) const {
+    FitState state = start;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        number_in(state, numbers[k].at) = numbers[k].value(x(static_cast<Index>(k)));
+    return state;
 }
 
-FitState FitProblem::at(const double* x) const {
-    FitState moved = state;
-    for (std::size_t k = 0; k < free.size(); ++k)
-        number_in(moved, free[k].number) = x[k] * free[k].plausible;
-    return moved;
+std::vector<FitPlaceInState> FitProblem::places() const {
+    std::vector<FitPlaceInState> places;
+    for (const FitNumber& number : numbers) places.push_back(number.at);
+    return places;
 }
 
-FitProblem fit_problem(const RigText& text, const FitOptions& options, const FitAngles& angles) {
-    const Rig rig = text.rig();
-    require_known(options, rig);
-    FitProblem problem;
-    FitState& state = problem.state;
-    for (const Strobe& strobe : rig.strobes) {
-        state.power.push_back(strobe.power);
-        state.aim_rad.push_back({0.0, 0.0});
-    }
-    add_water(text, rig, options, state, problem.free);
-    add_beams(rig, options, angles, state, problem.free);
-    add_strobes(rig, options, state, problem.free);
-    add_camera(rig, options, state, problem.free);
-    keep_those_asked(options, problem);
-    for (FreeNumber& one : problem.free) one.start = number_in(state, one.number);
-    return problem;
+void require_fit_options(const RigText& text, const FitOptions& options) {
+    constexpr double kAny_rad = 1.0;
+    static_cast<void>(fit_problem(text, options, kAny_rad, kAny_rad));
 }
 
-std::vector<std::string> words_fixed_in(const FitProblem& problem) {
-    std::set<std::string> free;
-    for (const FreeNumber& one : problem.free) free.insert(one.group);
-    for (const FitBeam& beam : problem.state.beams)
-        if (beam.kind() != FitBeamKind::Held) free.insert("beam");
-    // A beam of its own has its own power.
-    const FitState& state = problem.state;
-    if (free.contains("beam") && state.beams.size() == state.beam_of.size()) free.insert("power");
-    std::vector<std::string> fixed;
-    for (const char* word : kWords)
-        if (!free.contains(word)) fixed.emplace_back(word);
-    return fixed;
+FitProblem fit_problem(const RigText& text,
+                       const FitOptions& options,
+                       double widest_rad,
+                       double block_rad) {
+    return Problem(text, options).of(widest_rad, block_rad);
 }
 
 }  // namespace aphotic

@@ -211,35 +211,6 @@ FitSamples samples_of_images(const Survey& survey,
     return samples;
 }
 
-FitSamples in_blocks(const FitSamples& samples, int blocks_across) {
-    const FitPlaces& fine = samples.places;
-    // Of whole blocks.
-    const int merge = fine.width_px / blocks_across / fine.block_px;
-    if (merge <= 1) return samples;
-    const FitPlaces places = places_of(fine.width_px, fine.height_px, merge * fine.block_px);
-    const std::size_t across = blocks_along(fine.width_px, places.block_px);
-    const std::size_t down = blocks_along(fine.height_px, places.block_px);
-    FitSamples merged = samples;
-    merged.places = places;
-    for (FitImage& image : merged.images) {
-        std::vector<Mean> means(across * down * kChannels);
-        for (std::size_t k = 0; k < image.signal.size(); ++k) {
-            const std::size_t place = k / kChannels;
-            const auto i = static_cast<std::size_t>(fine.columns[place] / places.block_px);
-            const auto j = static_cast<std::size_t>(fine.rows[place] / places.block_px);
-            if (i >= across || j >= down) continue;
-            Mean& mean = means[(j * across + i) * kChannels + k % kChannels];
-            ++mean.sites;
-            if (!std::isfinite(image.signal[k])) continue;
-            mean.sum += image.signal[k];
-            ++mean.count;
-        }
-        image.signal.clear();
-        for (const Mean& mean : means) image.signal.push_back(mean.signal());
-    }
-    return merged;
-}
-
 FitSamples samples_of_maps(const std::vector<std::string>& maps,
                            const Camera& camera,
                            int blocks_across) {

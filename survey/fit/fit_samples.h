@@ -49,9 +49,6 @@ struct FitSamples {
                                            std::size_t jobs,
                                            const RunWatch& watch);
 
-// The same in blocks of about so many across, or as they are where they are no finer.
-[[nodiscard]] FitSamples in_blocks(const FitSamples& samples, int blocks_across);
-
 // Maps by `aphotic observe`, or by any program that writes R, G, B and the attributes
 // aphotic:altitude_m, aphotic:pitch_deg, aphotic:roll_deg. An InputError for one that cannot be
 // used: there are few, and each was named.

@@ -43,7 +43,7 @@ void add_beam(const FitBeam& fit,
         return;
     }
     if (fit.kind() == FitBeamKind::Cosine) {
-        const double half = std::acos(std::pow(0.5, 1.0 / fit.shapes().front()));
+        const double half = std::acos(std::pow(0.5, std::exp(-fit.coefficients().front())));
         text.set(key + ".fwhm_deg", rounded(2.0 * half * kDegreesPerRadian));
         return;
     }
@@ -58,34 +58,31 @@ void add_beam(const FitBeam& fit,
     }
 }
 
-// Or the lamps' own figures stay.
-bool is_light_fitted(const FitResult& result) {
-    const auto is_free = [](const FitBeam& beam) { return beam.kind() != FitBeamKind::Held; };
-    const auto is_power = [](const FittedNumber& one) { return one.number.part == FitPart::Power; };
-    return std::ranges::any_of(result.state.beams, is_free) ||
-           std::ranges::any_of(result.numbers, is_power);
+// Beams of the rig that no strobe has now.
+void erase_orphans(const Rig& rig, RigText& text) {
+    for (const Strobe& strobe : rig.strobes) {
+        const std::string& name = strobe.beam.name;
+        const bool is_used = std::ranges::any_of(rig.strobes, [&](const Strobe& other) {
+            return text.word("strobe." + other.name + ".beam") == name;
+        });
+        if (!is_used && text.has("beam." + name)) text.erase("beam." + name);
+    }
 }
 
+// The powers of a rig have a common scale that no image tells: together they stay as they were.
 void set_strobes(const RigText& rig_text,
                  const Rig& rig,
-                 const FitResult& result,
+                 const FitState& state,
                  const fs::path& folder,
                  RigText& text) {
-    const FitState& state = result.state;
     std::vector<FitBeam::Fitted> beams;
-    Eigen::Index first = 0;
-    for (std::size_t b = 0; b < state.beams.size(); ++b) {
-        const auto count = static_cast<Eigen::Index>(state.beams[b].parts());
-        beams.push_back(state.beams[b].beam_of(result.shares.segment(first, count)));
-        first += count;
-    }
+    for (const FitBeam& beam : state.beams) beams.push_back(beam.fitted());
     double all = 0.0;
     double was = 0.0;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         all += state.power[s] * beams[state.beam_of[s]].flux;
         was += rig.strobes[s].power;
     }
-    const bool is_fitted = is_light_fitted(result);
     std::vector<bool> is_written(beams.size(), false);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
@@ -98,16 +95,21 @@ void set_strobes(const RigText& rig_text,
             is_written[b] = true;
             text.set(key + ".beam", name);
         }
-        if (is_fitted) {
-            for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
-                text.erase(key + flux);
-            text.set(key + ".power", rounded(state.power[s] * beams[b].flux * was / all));
+        const double power = state.power[s] * beams[b].flux * was / all;
+        if (strobe.power > 0.0 && power != strobe.power) {
+            // In the unit that the rig has it in.
+            std::string unit = ".power";
+            for (const char* told : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
+                if (text.has(key + told)) unit = told;
+            const double told = rig_text.number(key + unit).value_or(1.0);
+            text.set(key + unit, rounded(told * power / strobe.power));
         }
         if (state.aim_rad[s][0] == 0.0 && state.aim_rad[s][1] == 0.0) continue;
-        const Eigen::Vector3d axis = aimed_axis(rig, state, s);
+        const Eigen::Vector3d axis = aimed_axis(rig, state.aim_rad[s], s);
         text.erase(key + ".aim");
         text.set(key + ".direction", std::vector<double>{axis.x(), axis.y(), axis.z()});
     }
+    erase_orphans(rig, text);
 }
 
 void set_floor(const Spectrum& was, double brightness, const fs::path& folder, RigText& text) {
@@ -127,13 +129,16 @@ void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs
     const Rig rig = rig_text.rig();
     RigText text = rig_text;
     rig_text.copy_files(folder);
-    set_strobes(rig_text, rig, result, folder, text);
     const FitState& state = result.state;
+    set_strobes(rig_text, rig, state, folder, text);
     set_floor(rig.seafloor.reflectance, state.floor_brightness, folder, text);
     for (const WaterNumber& number : state.water) text.set(number.key, number.value);
     if (!state.vignetting.empty()) {
         text.erase("camera.vignetting");
-        text.set("camera.vignetting.radial", state.vignetting);
+        if (state.vignetting.size() == 1)
+            text.set("camera.vignetting.cosine", rounded(state.vignetting.front()));
+        else
+            text.set("camera.vignetting.radial", state.vignetting);
     }
     if (state.offset.altitude_m != 0.0) {
         text.set("sled.altitude_offset_m",

@@ -6,15 +6,16 @@
 //   beam         [beam.fitted], or of several [beam.fitted-1] and so on: a table beside it, or the
 //                rig's with other shares or optics
 //   aim          `direction` of each strobe
-//   power        of each strobe, times the flux that its beam has by the fit; together as much as
-//                before. Where neither beams nor powers were fitted, the strobes' figures stay.
+//   power        of each strobe in the unit that it has, times the flux that its beam has by the
+//                fit; together as much as before. Where neither beams nor powers were fitted, the
+//                strobes' figures stay.
 //   water        the keys of [water]
-//   vignetting   { radial = [...] }
+//   vignetting   { cosine = n } or { radial = [...] }
 //   floor        the rig's reflectance times the brightness that the veil tells, fitted-floor.csv
 //   offsets      added to altitude_offset_m, and to the camera's orientation_deg
 //
-// Gains of the channels and the colour of the images' floor are no part of a rig, whose map is that
-// of its own floor: fit.json has them.
+// The colour of the images' floor is no part of a rig, whose map is that of its own floor: fit.json
+// has it.
 #pragma once
 
 #include "survey/fit/fit.h"

@@ -1,27 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A survey simulated, a rig fitted to it, and the files that this leaves.
-#include "base/atomic_file.h"
+// The fit as a user runs it: surveys simulated and maps made of a rig that is known, and a rig
+// fitted to them that began elsewhere.
+#include "base/degrees.h"
+#include "image/output_images.h"
 #include "rig/file/rig_reader.h"
+#include "support/command_test.h"
 #include "support/fit_rig.h"
-#include "support/run_command.h"
-#include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
-#include <string_view>
-#include <variant>
 #include <vector>
 
 namespace aphotic::cli_fit_test {
 namespace {
 
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
 // Of one number, its error being what it says.
 constexpr double kSigmas = 4.0;
+// By maps without noise, each right to 1e-4.
+constexpr double kByMaps = 2e-4;
+// What such a test begins with is off by more, so that it can fail.
+constexpr double kAtFirst = 0.02;
+
+const Arguments kCamera("--bayer RGGB --black-level 64 --white-level 4095");
 
 FitRigNumbers of_few_pixels() {
     FitRigNumbers numbers;
@@ -30,334 +40,322 @@ FitRigNumbers of_few_pixels() {
     return numbers;
 }
 
-// Of truth.toml at three altitudes, made and named last on the command line.
-void add_maps(const TempFolder& folder, std::vector<std::string>& command) {
-    for (const std::string altitude : {"1.5", "2", "2.5"}) {
-        command.push_back(altitude + ".exr");
-        const CommandResult map =
-            run_aphotic(folder.path(),
-                        {"lightmap", "truth.toml", "--altitude", altitude, "-o", command.back()});
-        ASSERT_EQ(map.status, 0) << map.err;
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), by);
+}
+
+class CommandFit : public CommandTest {
+  protected:
+    // Of what made the images, and what the fit begins with.
+    void write_rigs(const std::string& truth, const std::string& rig) const {
+        write_text_file(path("truth.toml"), truth);
+        write_text_file(path("rig.toml"), rig);
+    }
+    void write_rigs(const FitRigNumbers& truth, const FitRigNumbers& rig) const {
+        write_rigs(fit_rig(truth).text(), fit_rig(rig).text());
+    }
+
+    // Of truth.toml, into survey.
+    void fly(const Arguments& more) const { done("survey truth.toml -o survey" + more); }
+    // To which that of a rig is fitted into fitted.
+    [[nodiscard]] CommandResult by_images(const Arguments& more) const {
+        return aphotic(
+            "fit rig.toml --images survey/raw --nav survey/navigation-measured.txt -o fitted" +
+            more);
+    }
+    // The same to three maps of truth.toml.
+    [[nodiscard]] CommandResult by_maps(const Arguments& more) const {
+        Arguments fit("fit rig.toml -o fitted --maps");
+        for (const std::string altitude : {"1.5", "2", "2.5"}) {
+            fit.push_back(altitude + ".exr");
+            done(Arguments{"lightmap", "truth.toml", "--altitude", altitude, "-o", fit.back()});
+        }
+        return aphotic(fit + more);
+    }
+
+    [[nodiscard]] Json number(const std::string& key) const {
+        const Json numbers = json_in("fitted/fit.json").at("numbers");
+        const auto at =
+            std::ranges::find_if(numbers, [&](const Json& one) { return one.at("key") == key; });
+        return at == numbers.end() ? Json() : *at;
+    }
+
+    // By how much a correction by the rig of truth.toml's images would be off across one: of both
+    // lights at 2 m, by lightmaps, which share no code with the fit's light; rms of the logarithm.
+    [[nodiscard]] double unevenness(const std::string& rig) const {
+        const auto logarithm_of = [&](const std::string& of) -> Eigen::ArrayXXd {
+            done(Arguments{"lightmap", of, "-o", "at-2-m.exr"});
+            const std::vector<float> light = read_signals(path("at-2-m.exr")).samples;
+            const Eigen::Index pixels = std::ssize(light) / kChannels;
+            return Eigen::ArrayXXf::Map(light.data(), pixels, kChannels).cast<double>().log();
+        };
+        const Eigen::ArrayXXd off = logarithm_of(rig) - logarithm_of("truth.toml");
+        return std::sqrt((off.rowwise() - off.colwise().mean()).square().mean());
+    }
+};
+
+TEST_F(CommandFit, LearnsARigFromASurvey) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.fore_tilt_deg = 26.0;
+    numbers.multiple = 1.3;
+    write_rigs(of_few_pixels(), numbers);
+    fly("--images 20 --texture 0.005");
+    const std::string out =
+        done(by_images(kCamera + "--blocks 12"), "correction by this rig is expected to be even to")
+            .out;
+    EXPECT_TRUE(has(out, "splines fitted to 20 images\n"));
+    EXPECT_TRUE(has(out, "not fitted, as the rig has them: floor\n"));
+
+    const Json json = json_in("fitted/fit.json");
+    const auto error_of = [&](const std::string& key) {
+        return number(key).at("error").get<double>();
+    };
+    EXPECT_NEAR(number("water.multiple").at("value").get<double>(),
+                1.0,
+                kSigmas * error_of("water.multiple"));
+    const Rig truth = read_rig(path("truth.toml"));
+    const Rig fitted = read_rig(path("fitted/fitted.toml"));
+    for (std::size_t s = 0; s < 2; ++s) {
+        const std::string key = "strobe." + truth.strobes[s].name;
+        const double error_deg =
+            std::hypot(error_of(key + ".aim_along_deg"), error_of(key + ".aim_across_deg"));
+        const double off_rad = std::acos(truth.strobes[s].axis.dot(fitted.strobes[s].axis));
+        EXPECT_LT(kDegreesPerRadian * off_rad, kSigmas * error_deg) << key;
+        EXPECT_LT(error_deg, 1.0) << key;
+    }
+    EXPECT_EQ(fitted.strobes[0].beam.name, "fitted");
+    constexpr double kOnce = 3.0;  // one sample of an rms, of few directions at worst
+    const double expected = json.at("expected_unevenness").get<double>();
+    EXPECT_LT(unevenness("fitted/fitted.toml"), kOnce * expected);
+    EXPECT_LT(kOnce * expected, unevenness("rig.toml"));
+
+    const Json source = json.at("fitted_to");
+    EXPECT_EQ(Json({source["images"], source["block_px"], source["beam"]}), Json({20, 8, "table"}));
+    constexpr double kRounding = 1e-9;
+    const Json& covariance = json.at("covariance");
+    for (std::size_t i = 0; i < json.at("numbers").size(); ++i) {
+        const double error = json.at("numbers").at(i).at("error");
+        EXPECT_EQ(covariance.at("of").at(i), json.at("numbers").at(i).at("key"));
+        const double variance = covariance.at("rows").at(i).at(i);
+        EXPECT_NEAR(variance, error * error, kRounding * error * error);
+    }
+
+    const std::string page = text_of("fitted/report.html");
+    for (const std::string part : {"splines fitted to 20 images",
+                                   "Correction by this rig is expected to be even to",
+                                   "What was found",
+                                   "Not fitted, as the rig has them: floor.",
+                                   "Observed and fitted",
+                                   "what stays in place",
+                                   "id=\"beam-0\"",
+                                   "within twice its standard error",
+                                   "id=\"brightness\"",
+                                   "The rig that it began with"})
+        EXPECT_TRUE(page.find(part) != std::string::npos) << part;
+    // What fit.json and the terminal name, the page does, too.
+    for (const Json& one : json.at("numbers")) {
+        if (one.at("determined")) continue;
+        const std::string words =
+            one.at("key").get<std::string>() + " is not determined by this survey (+-";
+        EXPECT_TRUE(has(out, words));
+        EXPECT_TRUE(page.find(words) != std::string::npos) << words;
+    }
+    EXPECT_EQ(page.find(">Confounded<") != std::string::npos, !json.at("confounded").empty());
+}
+
+// A lamp of a millionth of the light has no aim that anybody sees.
+TEST_F(CommandFit, NamesWhatThePriorAloneTells) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.aft_power = 1e-6;
+    write_rigs(numbers, numbers);
+    fly("--images 10 --texture 0.02");
+    const CommandResult run = done(
+        by_images(kCamera + "--blocks 8 --free aim,water --hold strobe.fore.aim_across_deg,tint "
+                            "--prior aim=3deg,water=0.001"),
+        "strobe.aft.aim_along_deg is not determined by this survey (+-");
+    EXPECT_TRUE(has(run.out, "water.multiple is not determined by this survey (+-0.001"));
+    constexpr double kUnseen_deg = 0.01;
+    constexpr double kOfPrior = 0.05;  // halves that agree by chance, too
+    const Json aft = number("strobe.aft.aim_along_deg");
+    EXPECT_EQ(aft.at("determined"), false);
+    EXPECT_NEAR(aft.at("value").get<double>(), 0.0, kUnseen_deg);
+    EXPECT_NEAR(aft.at("error").get<double>(), 3.0, 3.0 * kOfPrior);
+    // What is known well beforehand stays.
+    EXPECT_EQ(number("water.multiple").at("determined"), false);
+    EXPECT_NEAR(number("water.multiple").at("value").get<double>(), 1.0, kSigmas * 0.001);
+    // The other lamp's is seen, as far as it is free.
+    EXPECT_EQ(number("strobe.fore.aim_along_deg").at("determined"), true);
+    for (const char* held : {"strobe.fore.aim_across_deg", "floor.redness", "strobe.fore.power"})
+        EXPECT_TRUE(number(held).is_null()) << held;
+    EXPECT_TRUE(has(run.out, "not fitted, as the rig has them: beam, power, vignetting, floor\n"));
+}
+
+// Each kind of beam and lens makes up for what the rig has wrong of it, so that its light is the
+// truth's.
+TEST_F(CommandFit, FindsBeamsAndLensesOfEveryKind) {
+    const std::string smooth = fit_rig(of_few_pixels()).text();
+    const auto of_cones = [&](const std::string& cones) {
+        return replaced(smooth, "weight = 1.0, exponent = 6 }", cones + " }");
+    };
+    const std::string rim = ", { part = \"rim\", half_angle_deg = 90.0, exponent = 2.0, weight = ";
+    const auto of_lens = [&](const std::string& focal_length_mm) {
+        return replaced(of_cones(""),
+                        "cones = [{ part = \"all\", half_angle_deg = 90.0,  }]",
+                        "diffuser_mm = [30.0, 60.0]\naperture_mm = 60.0\ndistance_mm = 40.0\n"
+                        "focal_length_mm = " +
+                            focal_length_mm);
+    };
+    const auto of_vignetting = [&](const std::string& lens) {
+        return replaced(smooth, "radial = [-0.1, 0.0, 0.0]", lens);
+    };
+    const std::string broad_aft =
+        replaced(smooth, "beam = \"smooth\"\npower", "beam = \"broad\"\npower") +
+        "[beam.broad]\ncones = [{ part = \"all\", half_angle_deg = 90.0, weight = 1.0 }]\n";
+    const std::string narrow = of_cones("weight = 1.0, exponent = 4.0");
+    const std::string core = "exponent = 12.0, weight = ";
+    struct Kind {
+        std::string options;
+        std::string truth;
+        std::string rig;
+    };
+    for (const auto& [options, truth, rig] : std::vector<Kind>{
+             {"beam", smooth, narrow},
+             {"beam --beam cosine", smooth, narrow},
+             {"beam --beam cones",
+              of_cones(core + "0.7 }" + rim + "0.3"),
+              of_cones(core + "0.5 }" + rim + "0.5")},
+             {"beam --beam optics", of_lens("50.0"), of_lens("47.0")},
+             {"beam,power --beam cosine --beam-each", broad_aft, smooth},
+             {"vignetting", of_vignetting("cosine = 4.0"), of_vignetting("cosine = 3.0")},
+             {"vignetting --vignetting radial",
+              of_vignetting("cosine = 4.0"),
+              of_vignetting("cosine = 3.0")},
+             {"vignetting", smooth, of_vignetting("radial = [-0.3, 0.0, 0.0]")}}) {
+        SCOPED_TRACE(options);
+        write_rigs(truth, rig);
+        done(by_maps("--hold tint --blocks 24 --free " + options));
+        EXPECT_GT(unevenness("rig.toml"), kAtFirst);
+        EXPECT_LT(unevenness("fitted/fitted.toml"), kByMaps);
+        // No beam is left that no strobe has.
+        const std::string fitted = text_of("fitted/fitted.toml");
+        EXPECT_EQ(has(fitted, "[beam.smooth]"), !has(options, "beam")) << fitted;
+        EXPECT_EQ(has(fitted, "[beam.fitted-2]"), has(options, "--beam-each")) << fitted;
+        EXPECT_EQ(has(fitted, "radial"), has(rig + options, "radial")) << fitted;
+        fs::remove_all(path("fitted"));
     }
 }
 
-TEST(CommandFit, LearnsARigFromASurvey) {
-    const TempFolder folder;
-    FitRigNumbers numbers = of_few_pixels();
-    write_text_file(folder.path() / "truth.toml", fit_rig(numbers).text());
-    numbers.fore_tilt_deg = 23.0;
-    numbers.multiple = 1.3;
-    write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
-    const CommandResult survey = run_aphotic(
-        folder.path(),
-        {"survey", "truth.toml", "--images", "20", "--texture", "0.02", "-o", "survey"});
-    ASSERT_EQ(survey.status, 0) << survey.err;
-    const CommandResult fit = run_aphotic(
-        folder.path(), {"fit",        "rig.toml",       "--images",
-                        "survey/raw", "--nav",          "survey/navigation-measured.txt",
-                        "--bayer",    "RGGB",           "--black-level",
-                        "64",         "--white-level",  "4095",
-                        "--free",     "beam,aim,water", "--blocks",
-                        "12",         "--parts",        "8",
-                        "-o",         "fitted",         "--json"});
-    ASSERT_EQ(fit.status, 0) << fit.err;
-    const auto json = nlohmann::json::parse(fit.out);
-    const auto& covariance = json.at("covariance");
-    for (std::size_t i = 0; i < json.at("numbers").size(); ++i) {
-        const auto& one = json.at("numbers").at(i);
-        const std::size_t row = covariance.at("of").size() - json.at("numbers").size() + i;
-        EXPECT_EQ(covariance.at("of").at(row), one.at("key"));
-        EXPECT_NEAR(std::sqrt(covariance.at("rows").at(row).at(row).get<double>()),
-                    one.at("error").get<double>(),
-                    1e-9 * one.at("error").get<double>());
-    }
-    bool is_found = false;
-    for (const auto& one : json.at("numbers")) {
-        if (one.at("key") != "strobe.fore.aim_along_deg") continue;
-        is_found = true;
-        const double error = one.at("error");
-        EXPECT_NEAR(
-            one.at("value").get<double>(), 3.0 * std::cos(std::atan2(0.1, 0.5)), kSigmas * error);
-        EXPECT_LT(error, 1.0);
-    }
-    EXPECT_TRUE(is_found);
-    EXPECT_EQ(read_text_file(folder.path() / "fitted/fit.json"), fit.out);
-    EXPECT_EQ(read_rig(folder.path() / "fitted/fitted.toml").strobes[0].beam.name, "fitted");
-    EXPECT_EQ(json.at("fitted_to").at("images"), 20);
-    EXPECT_EQ(json.at("fitted_to").at("block_px"), 8);
-    EXPECT_EQ(json.at("fitted_to").at("beam"), "table");
-    EXPECT_EQ(json.at("fitted_to").at("parts"), 8);
-    const std::string page = read_text_file(folder.path() / "fitted/report.html");
-    for (const char* part : {" and a beam of 8 splines fitted to 20 images",
-                             "Observed and fitted",
-                             "strobe.fore.aim_along_deg",
-                             "within twice its standard error",
-                             "id=\"beam-0\"",
-                             "id=\"residuals\"",
-                             "Not fitted, as the rig has them: ",
-                             "From image to image"})
-        EXPECT_NE(page.find(part), std::string::npos) << part;
-    // What fit.json holds and warns of, the page does, too.
-    const auto times = [&](std::string_view words) {
-        std::size_t count = 0;
-        for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++count;
-        return count;
+// Together as much as before, shared out as the truth has it.
+TEST_F(CommandFit, LeavesLumensLumens) {
+    const std::string toml = replaced(fit_rig(of_few_pixels()).text(),
+                                      "name = \"fore\"",
+                                      "name = \"fore\"\nluminous_flux_lm = 10000.0");
+    write_rigs(replaced(toml, "power = 0.8", "luminous_flux_lm = 8000.0"),
+               replaced(toml, "power = 0.8", "luminous_flux_lm = 9000.0"));
+    const std::string out = done(by_maps("--free power --hold tint --blocks 24 --json")).out;
+    EXPECT_EQ(out, text_of("fitted/fit.json"));
+    EXPECT_EQ(json_in("fitted/fit.json").at("fitted_to").at("maps"), 3);
+    const std::string fitted = text_of("fitted/fitted.toml");
+    EXPECT_FALSE(has(fitted, "power")) << fitted;
+    const auto expect_lumens = [&](const std::string& strobe, double lumens) {
+        const std::string key = "luminous_flux_lm = ";
+        const std::size_t at = fitted.find(key, fitted.find(strobe)) + key.size();
+        EXPECT_NEAR(std::stod(fitted.substr(at)), lumens, lumens * kByMaps) << strobe;
     };
-    EXPECT_EQ(times("Held: "), json.at("held").size());
-    EXPECT_EQ(times(">Warnings<"), json.at("looks_wrong").empty() ? 0U : 1U);
-    EXPECT_EQ(times(">Confounded<"), json.at("confounded").empty() ? 0U : 1U);
+    expect_lumens("\"fore\"", 19000.0 / 1.8);
+    expect_lumens("\"aft\"", 19000.0 * 0.8 / 1.8);
 }
 
 // Exposed so that the floor's middle fills twice what a pixel holds.
-TEST(CommandFit, FindsOutASaturatedSurvey) {
-    const TempFolder folder;
-    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
-    const CommandResult survey =
-        run_aphotic(folder.path(),
-                    {"survey", "rig.toml", "--images", "8", "--floor-share", "2", "-o", "survey"});
-    ASSERT_EQ(survey.status, 0) << survey.err;
-    const auto fit = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"fit",
-                                           "rig.toml",
-                                           "--images",
-                                           "survey/raw",
-                                           "--nav",
-                                           "survey/navigation.txt",
-                                           "--bayer",
-                                           "RGGB",
-                                           "--black-level",
-                                           "64",
-                                           "--free",
-                                           "aim",
-                                           "--blocks",
-                                           "8",
-                                           "-o",
-                                           "fitted"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_aphotic(folder.path(), arguments);
-    };
-    CommandResult run = fit({});
-    EXPECT_EQ(run.status, 0);
-    EXPECT_NE(run.err.find("looks wrong: white-level:"), std::string::npos) << run.err;
-    EXPECT_NE(run.out.find("looks wrong: white-level:"), std::string::npos) << run.out;
-    std::filesystem::remove_all(folder.path() / "fitted");
-    run = fit({"--strict"});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
-    // Told, saturated blocks are left out, which is said once the fit is done.
-    run = fit({"--white-level", "4095", "--strict"});
-    EXPECT_EQ(run.status, 1) << run.err;
-    EXPECT_NE(run.out.find("looks wrong: saturation:"), std::string::npos) << run.out;
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "fitted/fit.json"));
-}
-
-// Maps by observe of few images keep their floors' texture, which errors take for noise; those by
-// lightmap have none.
-TEST(CommandFit, SaysOfMapsWhatTheyHaveKept) {
-    const TempFolder folder;
-    write_text_file(folder.path() / "rig.toml", fit_rig(of_few_pixels()).text());
-    const auto run = [&](const std::vector<std::string>& arguments) {
-        CommandResult result = run_aphotic(folder.path(), arguments);
-        EXPECT_EQ(result.status, 0) << result.err;
-        return result;
-    };
-    run({"survey", "rig.toml", "--images", "24", "--texture", "0.1", "-o", "survey"});
-    std::vector<std::string> observed{"fit", "rig.toml", "--free", "aim", "-o", "a", "--maps"};
-    std::vector<std::string> modelled{"fit", "rig.toml", "--free", "aim", "-o", "b", "--maps"};
-    for (const std::string altitude : {"1.5", "2", "2.5"}) {
-        const std::string map = "observed" + altitude + ".exr";
-        run({"observe",
-             "survey/raw",
-             "--nav",
-             "survey/navigation.txt",
-             "--altitude",
-             altitude,
-             "--within",
-             "0.3",
-             "--bayer",
-             "RGGB",
-             "--black-level",
-             "64",
-             "--demosaic",
-             "-o",
-             map});
-        observed.push_back(map);
-        modelled.push_back("modelled" + altitude + ".exr");
-        run({"lightmap", "rig.toml", "--altitude", altitude, "-o", modelled.back()});
-    }
-    EXPECT_NE(run(observed).out.find("looks wrong: maps: neighbouring blocks"), std::string::npos);
-    const std::string well = run(modelled).out;
-    EXPECT_EQ(well.find("looks wrong"), std::string::npos) << well;
-    EXPECT_NE(well.find("not fitted, as the rig has them: beam, power, water, vignetting, floor, "
-                        "altitude, attitude, gain\n"),
-              std::string::npos)
-        << well;
-}
-
-TEST(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
-    const TempFolder folder;
-    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
-    const CommandResult survey =
-        run_aphotic(folder.path(), {"survey", "rig.toml", "--images", "3", "-o", "survey"});
-    ASSERT_EQ(survey.status, 0) << survey.err;
-    const CommandResult run = run_aphotic(folder.path(),
-                                          {"fit",
-                                           "rig.toml",
-                                           "--images",
-                                           "survey/raw",
-                                           "--nav",
-                                           "survey/navigation.txt",
-                                           "-o",
-                                           "fitted"});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.err.find("aphotic: none of the 3 images looked at can be read; 000001: found one "
-                           "channel and no --bayer; allowed: "),
-              0U)
-        << run.err;
-    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
+TEST_F(CommandFit, FindsOutASaturatedSurvey) {
+    write_rigs(FitRigNumbers{}, FitRigNumbers{});
+    fly("--images 8 --floor-share 2");
+    const Arguments untold("--bayer RGGB --black-level 64 --free aim --blocks 8");
+    const CommandResult run = done(by_images(untold), "looks wrong: white-level:");
+    EXPECT_TRUE(has(run.err, "looks wrong: white-level:"));
+    fs::remove_all(path("fitted"));
+    refused(by_images(untold + "--strict"), "white-level");
+    EXPECT_FALSE(fs::exists(path("fitted")));
+    // Told, saturated samples are left out, which is said once the fit is done.
+    done(
+        by_images(untold + "--white-level 4095 --strict"), "looks wrong: saturation:", kAnswerIsNo);
+    EXPECT_TRUE(has(text_of("fitted/report.html"), ">Warnings<"));
+    EXPECT_EQ(json_in("fitted/fit.json").at("looks_wrong").size(), 1U);
 }
 
 // Red over blue falls as water's red does: in images whose mosaic is read as its mirror image it
 // rises. That is found out before the minutes that the fit takes.
-TEST(CommandFit, FindsOutRedForBlue) {
-    const TempFolder folder;
-    write_text_file(folder.path() / "rig.toml", fit_rig(of_few_pixels()).text());
-    const CommandResult survey =
-        run_aphotic(folder.path(),
-                    {"survey", "rig.toml", "--images", "12", "--texture", "0.1", "-o", "survey"});
-    ASSERT_EQ(survey.status, 0) << survey.err;
-    const auto fit = [&](const std::string& pattern) {
-        return run_aphotic(folder.path(),
-                           {"fit",
-                            "rig.toml",
-                            "--images",
-                            "survey/raw",
-                            "--nav",
-                            "survey/navigation-measured.txt",
-                            "--bayer",
-                            pattern,
-                            "--black-level",
-                            "64",
-                            "--white-level",
-                            "4095",
-                            "--free",
-                            "aim",
-                            "--blocks",
-                            "8",
-                            "--strict",
-                            "-o",
-                            pattern});
-    };
-    const CommandResult right = fit("RGGB");
-    EXPECT_EQ(right.status, 0) << right.out << right.err;
-    const CommandResult wrong = fit("BGGR");
-    EXPECT_EQ(wrong.status, 2) << wrong.out;
-    EXPECT_NE(wrong.err.find("bayer: red over blue varies"), std::string::npos) << wrong.err;
-    EXPECT_NE(wrong.err.find("--bayer RGGB puts them right"), std::string::npos) << wrong.err;
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "BGGR"));
+TEST_F(CommandFit, FindsOutRedForBlue) {
+    write_rigs(of_few_pixels(), of_few_pixels());
+    fly("--images 12 --texture 0.1");
+    const Arguments options("--black-level 64 --white-level 4095 --free aim --blocks 8 --strict");
+    const CommandResult wrong =
+        refused(by_images(options + "--bayer BGGR"), "bayer: red over blue varies");
+    EXPECT_TRUE(has(wrong.err, "--bayer RGGB puts them right"));
+    EXPECT_FALSE(fs::exists(path("fitted")));
+    done(by_images(options + "--bayer RGGB"));
 }
 
-// Two lamps that differ: by one beam for both neither is right.
-TEST(CommandFit, GivesEachStrobeABeamOfItsOwn) {
-    const TempFolder folder;
-    std::string toml = fit_rig(of_few_pixels()).text();
-    write_text_file(folder.path() / "rig.toml", toml);
-    toml.replace(toml.rfind("beam = \"smooth\""), 15, "beam = \"broad\"");
-    toml += "[beam.broad]\ncones = [{ part = \"all\", half_angle_deg = 90.0, weight = 1.0 }]\n";
-    write_text_file(folder.path() / "truth.toml", toml);
-    std::vector<std::string> fit{"fit",
-                                 "rig.toml",
-                                 "--free",
-                                 "beam,power",
-                                 "--beam-each",
-                                 "--beam",
-                                 "cosine",
-                                 "--blocks",
-                                 "16",
-                                 "-o",
-                                 "fitted",
-                                 "--maps"};
-    add_maps(folder, fit);
-    const CommandResult run = run_aphotic(folder.path(), fit);
-    ASSERT_EQ(run.status, 0) << run.err;
-    const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
-    EXPECT_EQ(fitted.strobes[0].beam.name, "fitted-1");
-    EXPECT_EQ(fitted.strobes[1].beam.name, "fitted-2");
-    constexpr double kOff = 0.02;  // of exponents, by maps without noise
-    EXPECT_NEAR(fitted.strobes[0].beam.cones.at(0).exponent, 6.0, 6.0 * kOff);
-    EXPECT_NEAR(fitted.strobes[1].beam.cones.at(0).exponent, 1.0, kOff);
+TEST_F(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
+    write_rigs(FitRigNumbers{}, FitRigNumbers{});
+    fly("--images 3");
+    const CommandResult run =
+        refused(by_images({}),
+                "aphotic: none of the 3 images looked at can be read; 000001: found one channel "
+                "and no --bayer; allowed: ");
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    EXPECT_FALSE(fs::exists(path("fitted")));
 }
 
-// A plate of LEDs in a lens' focus but for its focal length, which is told wrong.
-TEST(CommandFit, FindsALensByItsOptics) {
-    const TempFolder folder;
-    const auto with_lens = [&](const std::string& name, double focal_length_mm) {
-        std::string toml = fit_rig(of_few_pixels()).text();
-        const std::size_t cones = toml.find("cones = ");
-        toml.replace(cones,
-                     toml.find('\n', cones) - cones,
-                     fmt::format("diffuser_mm = [30.0, 60.0]\naperture_mm = 60.0\n"
-                                 "focal_length_mm = {}\ndistance_mm = 40.0",
-                                 focal_length_mm));
-        write_text_file(folder.path() / name, toml);
-    };
-    with_lens("truth.toml", 50.0);
-    with_lens("rig.toml", 47.0);
-    std::vector<std::string> fit{
-        "fit", "rig.toml", "--free", "beam", "--beam", "optics", "-o", "fitted", "--maps"};
-    add_maps(folder, fit);
-    const CommandResult run = run_aphotic(folder.path(), fit);
-    ASSERT_EQ(run.status, 0) << run.err;
-    const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
-    const auto& optics = std::get<BeamOptics>(fitted.strobes[0].beam.pattern);
-    constexpr double kOff = 0.01;
-    EXPECT_NEAR(optics.focal_length_m / 0.050, 1.0, kOff);
-    EXPECT_NEAR(optics.distance_m / 0.040, 1.0, kOff);
-}
-
-TEST(CommandFit, SaysWhatItNeeds) {
-    const TempFolder folder;
-    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
-    CommandResult run = run_aphotic(folder.path(), {"fit", "rig.toml", "-o", "fitted"});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.err,
-              "aphotic: found neither --maps nor --images; allowed: either --maps or --images\n");
-    run = run_aphotic(folder.path(), {"fit", "rig.toml", "--images", ".", "-o", "fitted"});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.err, "aphotic: --images: found no navigation; allowed: with --nav FILE\n");
-    const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
-        std::vector<std::string> all{"fit", "rig.toml", "--maps", "a.exr", "-o", "fitted"};
-        all.insert(all.end(), more.begin(), more.end());
-        run = run_aphotic(folder.path(), all);
-        EXPECT_EQ(run.status, 2);
-        EXPECT_EQ(run.err, "aphotic: " + why + "\n");
-    };
-    refused({"--nav", "a.txt"}, "--nav: found with --maps; allowed: with --images");
-    refused({"--bayer", "RGGB"}, "--bayer: found with --maps; allowed: with --images");
-    for (const std::vector<std::string>& of_beams :
-         {std::vector<std::string>{"--beam", "cosine"}, {"--beam-each"}, {"--parts", "20"}}) {
-        std::vector<std::string> held = of_beams;
-        held.insert(held.end(), {"--free", "aim,water"});
-        refused(
-            held,
-            of_beams[0] + ": found with a beam that is not fitted; allowed: with beam in --free");
+TEST_F(CommandFit, SaysWhatItNeeds) {
+    write_rigs(FitRigNumbers{}, FitRigNumbers{});
+    done("lightmap rig.toml -o a.exr");
+    const std::string object =
+        "[[object]]\nname = \"ball\"\nshape = \"sphere\"\ncentre_m = [0.0, 0.0, 1.8]\n"
+        "radius_m = 0.1\nreflectance = \"sand\"\n";
+    write_text_file(path("ball.toml"), fit_rig({}).text() + object);
+    const std::string prior = "allowed: WORD=SPREAD, each word once, such as aim=2deg";
+    const std::string words = "allowed: beam, aim, power, water, vignetting, floor, tint, ";
+    const std::string no_beam = ": found with a beam that is not fitted; allowed: with beam free";
+    const std::string maps = "fit rig.toml --maps a.exr -o fitted ";
+    for (const auto& [line, why] : Cases{
+             {"fit rig.toml -o fitted", "found neither --maps nor --images; allowed: either"},
+             {maps + "--images .", "found --maps and --images; allowed: either"},
+             {"fit rig.toml --images . -o fitted", "--images: found no navigation; allowed: with"},
+             {"fit rig.toml --maps b.exr -o fitted", "b.exr: cannot be read: No such file"},
+             {"fit ball.toml --maps a.exr -o fitted", "ball.toml: found 1 object; allowed: none"},
+             {maps + "--set seafloor.phong=0.1", "seafloor.phong: found 0.1; allowed: 0, a matt"},
+             {maps + "--nav a.txt", "--nav: found with --maps; allowed: with --images"},
+             {maps + "--bayer RGGB", "--bayer: found with --maps; allowed: with --images"},
+             {maps + "--beam cosine --free aim", "--beam" + no_beam},
+             {maps + "--beam-each --hold beam", "--beam" + no_beam},
+             {maps + "--vignetting radial --free aim",
+              "--vignetting: found with a lens that is not"},
+             {maps + "--prior power=0.1 --free aim", "--prior: found 'power', which is not fitted"},
+             {maps + "--free floor", "--free: found floor in water that does not scatter"},
+             {maps + "--free aim,aims", "--free: found 'aims'; " + words},
+             {maps + "--hold water.multipel", "--hold: found 'water.multipel'; " + words},
+             {maps + "--prior watre=1", "--prior: found 'watre'; " + words},
+             {maps + "--prior aim", "--prior: found 'aim'; " + prior},
+             {maps + "--prior power=0.1,aim=", "--prior: found 'aim='; " + prior},
+             {maps + "--prior aim=0deg", "--prior: found 0 of aim; allowed: a standard"},
+             {maps + "--prior aim=2m", "--prior: found 'aim=2m'; " + prior},
+             {maps + "--prior aim=1,aim=2", "--prior: found 'aim=2'; " + prior},
+             {maps + "--prior aim=wide", "--prior: found 'aim=wide'; " + prior},
+             {maps + "--prior aim=inf", "--prior: found inf of aim; allowed: a standard"},
+             {maps + "--vignetting cos", "--vignetting"},
+             {maps + "--parts 20", "--parts"}}) {
+        const CommandResult run = refused(line, why);
+        EXPECT_LE(std::ranges::count(run.err, '\n'), 2) << run.err;
     }
-    refused({"--parts", "20", "--beam", "cosine"},
-            "--parts: found with another beam; allowed: with --beam table");
-    refused({}, "a.exr: cannot be read: No such file or directory");
     // Before the images are read, which take longer.
-    run = run_aphotic(folder.path(), {"fit", "rig.toml", "--maps", "a.exr", "-o", "rig.toml/in"});
-    EXPECT_EQ(run.status, 3);
-    EXPECT_NE(run.err.find("rig.toml/in: cannot be created: "), std::string::npos) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
-
-    std::filesystem::rename(folder.path() / "rig.toml", folder.path() / "fitted.toml");
-    run = run_aphotic(folder.path(), {"fit", "fitted.toml", "--maps", "a.exr", "-o", "."});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.err,
-              "aphotic: --output: found the folder of fitted.toml, which would be replaced; "
-              "allowed: another\n");
+    refused(
+        "fit rig.toml --maps b.exr -o rig.toml/in", "rig.toml/in: cannot be created: ", kRunFailed);
+    fs::rename(path("rig.toml"), path("fitted.toml"));
+    refused("fit fitted.toml --maps a.exr -o .",
+            "--output: found the folder of fitted.toml, which would be replaced; allowed: another");
 }
 
 }  // namespace

@@ -100,38 +100,80 @@ def test_bad_images_are_refused(rig_file):
         aphotic.correct(np.zeros((36, 48), np.float32), light, bayer="RGGB")
 
 
-def test_a_fit_is_the_commands(rig_file, tmp_path, command):
+@pytest.fixture
+def flight(rig_file, tmp_path, command):
+    """What a fit of a survey of twelve images takes, and the same as words for the command."""
     command("survey", rig_file, "--images", 12, "-o", "survey")
-    nav = tmp_path / "survey/navigation-measured.txt"
-    said = command(
-        "fit", rig_file, "--images", "survey/raw", "--nav", nav, *LEVEL_WORDS,
-        "--free", "power,gain", "--blocks", 12, "-o", "fitted", "--json",
-    ).stdout  # fmt: skip
-    rig = aphotic.Rig.load(rig_file)
-    fit = aphotic.fit(
-        rig, images=[str(tmp_path / "survey/raw")], nav=nav, **LEVELS, free=["power", "gain"], blocks=12
+    images, nav = str(tmp_path / "survey/raw"), tmp_path / "survey/navigation-measured.txt"
+    words = ["--images", images, "--nav", nav, *LEVEL_WORDS, "--blocks", 12]
+    return {"images": [images], "nav": nav, **LEVELS, "blocks": 12}, words
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        (
+            ["--free", "beam,aim,power,vignetting", "--hold", "strobe.aft.power,strobe.fore.aim_along_deg",
+             "--prior", "aim=1deg,power=0.2", "--vignetting", "radial"],
+            {"free": ["beam", "aim", "power", "vignetting"],
+             "hold": ["strobe.aft.power", "strobe.fore.aim_along_deg"],
+             "priors": {"aim": 1, "power": 0.2}, "vignetting": "radial"},
+        ),
+        (
+            ["--hold", "water,vignetting", "--beam", "cones", "--beam-each"],
+            {"hold": ["water", "vignetting"], "beam": "cones", "beam_each": True},
+        ),
+    ],
+)  # fmt: skip
+def test_a_fit_is_the_commands(rig_file, tmp_path, command, flight, words, options):
+    survey, survey_words = flight
+    said = json.loads(
+        command("fit", rig_file, *survey_words, *words, "-o", "fitted", "--json").stdout
     )
-    assert json.loads(fit.json) == json.loads(said)
-    assert [one.key for one in fit.numbers] == [one["key"] for one in json.loads(said)["numbers"]]
+    fit = aphotic.fit(aphotic.Rig.load(rig_file), **survey, **options)
+    assert json.loads(fit.json) == said
+    numbers = [
+        {
+            "key": one.key,
+            "start": one.start,
+            "value": one.value,
+            "error": one.error,
+            "prior": one.prior,
+            "determined": one.is_determined,
+        }
+        for one in fit.numbers
+    ]
+    for one in said["numbers"]:
+        one.pop("fly_at", None)
+    assert numbers == said["numbers"]
+    assert fit.unevenness == said["expected_unevenness"]
+    assert fit.looks_wrong == [(one["about"], one["what"]) for one in said["looks_wrong"]]
     saved = fit.save(tmp_path / "by-python")
     assert saved.text == (tmp_path / "fitted/fitted.toml").read_text()
 
 
-def test_a_fit_tells_what_it_skips(rig_file, tmp_path, command):
-    command("survey", rig_file, "--images", 12, "-o", "survey")
-    nav = tmp_path / "survey/navigation-measured.txt"
-    lines = nav.read_text().splitlines()
+def test_a_survey_does_not_determine_what_is_known_better(rig_file, flight):
+    """Of a thousandth of a degree twelve images know nothing; of the other aims they do."""
+    known = "strobe.fore.aim_along_deg"
+    fit = aphotic.fit(
+        aphotic.Rig.load(rig_file),
+        **flight[0],
+        free=["beam", "aim"],
+        beam="cones",
+        priors={known: 1e-3},
+    )
+    lacking = [one.key for one in fit.numbers if not one.is_determined]
+    assert [key for key in lacking if "aim" in key] == [known]
+    assert [text.split()[0] for text in fit.not_determined] == lacking
+
+
+def test_a_fit_tells_what_it_skips(rig_file, tmp_path, flight):
+    survey, _ = flight
+    lines = survey["nav"].read_text().splitlines()
     lines[-1] = "000012.tif,none,0,0"
-    nav.write_text("\n".join(lines) + "\n")
+    survey["nav"].write_text("\n".join(lines) + "\n")
     with pytest.warns(UserWarning, match="000012.tif: .*; skipped"):
-        fit = aphotic.fit(
-            aphotic.Rig.load(rig_file),
-            images=[str(tmp_path / "survey/raw")],
-            nav=nav,
-            **LEVELS,
-            free=["power", "gain"],
-            blocks=12,
-        )
+        fit = aphotic.fit(aphotic.Rig.load(rig_file), **survey, free=["power"])
     assert [image for image, _ in fit.skipped] == [str(tmp_path / "survey/raw/000012.tif")]
     assert all(why for _, why in fit.skipped + fit.looks_wrong)
 
@@ -167,5 +209,15 @@ def test_a_fit_says_what_it_needs(rig_file):
         aphotic.fit(rig)
     with pytest.raises(aphotic.InputError, match="images: found no navigation"):
         aphotic.fit(rig, images=["."])
-    with pytest.raises(aphotic.InputError, match="beam: found square"):
-        aphotic.fit(rig, maps=["a.exr"], beam="square")
+    wrong = [
+        ({"beam": "square"}, "beam: found square"),
+        ({"vignetting": "square"}, "vignetting: found square"),
+        ({"beam": "cones", "free": ["power"]}, "beam: found with a beam that is not fitted"),
+        ({"beam_each": True, "free": ["power"]}, "beam: found with a beam that is not fitted"),
+        ({"priors": {"aim": 0}}, "--prior: found 0 of aim"),
+        ({"priors": {"aim": float("inf")}}, "--prior: found inf of aim"),
+        ({"priors": {"aim": float("nan")}}, "--prior: found nan of aim"),
+    ]
+    for options, words in wrong:
+        with pytest.raises(aphotic.InputError, match=words):
+            aphotic.fit(rig, maps=["a.exr"], **options)

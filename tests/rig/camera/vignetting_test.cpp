@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace aphotic::vignetting_test {
 namespace {
@@ -38,6 +39,18 @@ TEST(Vignetting, IsTheFourthPowerOfTheCosine) {
     lens.vignetting = NaturalVignetting{};
     EXPECT_NEAR(vignetting_at(lens, 200.0, 150.0), 1.0, kRounding);
     EXPECT_NEAR(vignetting_at(lens, 200.0, 300.0), 0.25, kRounding);
+}
+
+// cos 45 degrees = 2^(-1/2).
+TEST(Vignetting, IsAnyPowerOfTheCosine) {
+    Camera lens = camera();
+    for (const auto& [exponent, wanted] :
+         {std::pair{0.0, 1.0}, {1.0, std::sqrt(0.5)}, {2.0, 0.5}, {4.0, 0.25}, {50.0, 0x1p-25}}) {
+        lens.vignetting = NaturalVignetting{exponent};
+        EXPECT_NEAR(vignetting_at(lens, 200.0, 150.0), 1.0, kRounding) << exponent;
+        EXPECT_NEAR(vignetting_at(lens, 200.0, 300.0), wanted, kRounding) << exponent;
+        EXPECT_NO_THROW(require_bright(lens)) << exponent;
+    }
 }
 
 // p is 1 at the corner, 3/5 at the middle of the lower rim of a 4:3 image.

@@ -5,6 +5,7 @@
 #include "base/printable.h"
 #include "rig/camera/calibration_file.h"
 #include "rig/camera/lens.h"
+#include "rig/camera/vignetting.h"
 #include "rig/geometry_signature.h"
 #include "support/has.h"
 #include "support/refusal.h"
@@ -170,6 +171,23 @@ TEST(RigReader, ReadsAConesExponent) {
     const Rig steep = parse(
         with(12, "cones = [{ part = \"x\", half_angle_deg = 60, weight = 0.5, exponent = 2.5 }]"));
     EXPECT_EQ(steep.strobes[0].beam.cones[0].exponent, 2.5);
+}
+
+Camera camera_with(std::string_view vignetting) {
+    return parse(with(8, "response = \"nikon-d5100\"\nvignetting = " + std::string(vignetting)))
+        .camera;
+}
+
+// In the middle of the lower rim, tan theta is 512 pixels over the focal length.
+TEST(RigReader, ReadsVignettingAsAPowerOfTheCosine) {
+    const double tangent = 512.0 * 6.45e-6 / 0.012;
+    const double cosine2 = 1.0 / (1.0 + tangent * tangent);
+    const Camera camera = camera_with("{ cosine = 4 }");
+    EXPECT_NEAR(vignetting_at(camera, 680.0, 1024.0), cosine2 * cosine2, kRounding);
+    EXPECT_EQ(camera.vignetting, camera_with("\"natural\"").vignetting);
+    EXPECT_NEAR(vignetting_at(camera_with("{ cosine = 3 }"), 680.0, 1024.0),
+                std::pow(cosine2, 1.5),
+                kRounding);
 }
 
 TEST(RigReader, ReadsEverythingThatMayBeSaid) {

@@ -1,130 +1,163 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The numbers of the water that may be asked for are those that this water has.
 #include "survey/fit/fit_problem.h"
 
+#include "base/degrees.h"
 #include "base/error.h"
 #include "support/fit_rig.h"
+#include "support/has.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace aphotic::fit_problem_test {
 namespace {
 
-std::vector<std::string> keys_of(const std::string& word) {
-    FitOptions options;
-    options.free = {{word}};
-    std::vector<std::string> keys;
-    for (const FreeNumber& one : fit_problem(fit_rig({}), options, {.widest_rad = 1.0}).free)
-        if (one.group == "water") keys.push_back(one.key);
+constexpr double kWidest_rad = 1.0;
+constexpr double kBlock_rad = 0.02;
+constexpr double kRounding = 1e-12;
+
+using Keys = std::vector<std::string>;
+
+FitProblem problem_of(const FitOptions& options, const RigText& rig = fit_rig({})) {
+    return fit_problem(rig, options, kWidest_rad, kBlock_rad);
+}
+
+// Of words other than the floor's colour, which is always free.
+Keys keys_of(const FitOptions& options, const RigText& rig = fit_rig({})) {
+    Keys keys;
+    for (const FitNumber& one : problem_of(options, rig).numbers)
+        if (one.word != "tint") keys.push_back(one.key);
     return keys;
 }
 
-TEST(FitProblem, TakesTheNumbersThatTheWaterHas) {
-    EXPECT_EQ(keys_of("water.multiple"), std::vector<std::string>{"water.multiple"});
-    EXPECT_EQ(keys_of("water.uniform_loss_per_m"),
-              std::vector<std::string>{"water.uniform_loss_per_m"});
+FitOptions free(const Keys& words) {
+    FitOptions options;
+    options.free = words;
+    return options;
 }
 
-TEST(FitProblem, RefusesANumberThatTheWaterHasNot) {
-    for (const char* word : {"water.nonsense", "water.chlorophyll_mg_m3"}) {
+const FitNumber& number_of(const FitProblem& problem, const std::string& key) {
+    return *std::ranges::find(problem.numbers, key, &FitNumber::key);
+}
+
+TEST(FitProblem, TakesNumbersByWordAndByKey) {
+    EXPECT_EQ(keys_of(free({"water"})), Keys{"water.multiple"});
+    EXPECT_EQ(keys_of(free({"water.uniform_loss_per_m"})), Keys{"water.uniform_loss_per_m"});
+    EXPECT_EQ(keys_of(free({"power"})), (Keys{"strobe.fore.power", "strobe.aft.power"}));
+    const Keys two{"strobe.aft.aim_across_deg", "strobe.fore.power"};
+    Keys found = keys_of(free(two));
+    std::ranges::sort(found);
+    EXPECT_EQ(found, two);
+    // The rig's lens is radial, so its terms are.
+    EXPECT_EQ(keys_of(free({"vignetting"})).size(), 3U);
+}
+
+TEST(FitProblem, HoldIsTheOppositeOfFree) {
+    FitOptions options;
+    const Keys all = keys_of(options);
+    options.hold = {"aim", "strobe.aft.power", "tint"};
+    for (const FitNumber& one : problem_of(options).numbers) {
+        EXPECT_NE(one.word, "aim");
+        EXPECT_NE(one.word, "tint");
+        EXPECT_NE(one.key, "strobe.aft.power");
+    }
+    // Four aims and a power.
+    EXPECT_EQ(keys_of(options).size(), all.size() - 5);
+}
+
+TEST(FitProblem, RefusesWhatNoNumberIsCalled) {
+    const auto refusal = [](const FitOptions& options) -> std::string {
         try {
-            static_cast<void>(keys_of(word));
-            ADD_FAILURE() << "accepted: " << word;
+            static_cast<void>(problem_of(options));
         } catch (const InputError& error) {
-            EXPECT_EQ(error.what(),
-                      std::string("--free: found '") + word +
-                          "'; allowed of this water: water.multiple, water.uniform_loss_per_m");
+            return error.what();
         }
+        return "accepted";
+    };
+    FitOptions hold;
+    hold.hold = {"aims"};
+    FitOptions prior;
+    prior.priors = {{"strobe.stern.power", 0.1}};
+    const std::string words =
+        "; allowed: beam, aim, power, water, vignetting, floor, tint, altitude, attitude, or one "
+        "number by its key: strobe.fore.beam, strobe.fore.aim_along_deg, ";
+    EXPECT_TRUE(has(refusal(free({"water.nonsense"})), "--free: found 'water.nonsense'" + words));
+    EXPECT_TRUE(has(refusal(free({"water.chlorophyll_mg_m3"})),
+                    "--free: found 'water.chlorophyll_mg_m3'" + words));
+    EXPECT_TRUE(has(refusal(hold), "--hold: found 'aims'" + words));
+    EXPECT_TRUE(has(refusal(prior), "--prior: found 'strobe.stern.power'" + words));
+    EXPECT_EQ(keys_of(free({"camera.vignetting.a2"})), Keys{"camera.vignetting.a2"});
+    EXPECT_TRUE(has(refusal(free({"floor"})), "only the veil tells how bright the floor is"));
+}
+
+// In the key's unit; of what is searched for as a factor, relative.
+TEST(FitProblem, PriorsAreInTheKeysUnits) {
+    FitOptions options;
+    options.priors = {{"aim", 1.5}, {"strobe.aft.aim_along_deg", 4.0}, {"water", 0.05}};
+    const FitProblem problem = problem_of(options);
+    EXPECT_NEAR(number_of(problem, "strobe.fore.aim_across_deg").spread,
+                1.5 * kRadiansPerDegree,
+                kRounding);
+    EXPECT_NEAR(
+        number_of(problem, "strobe.aft.aim_along_deg").spread, 4.0 * kRadiansPerDegree, kRounding);
+    EXPECT_EQ(number_of(problem, "water.multiple").spread, 0.05);
+    EXPECT_TRUE(number_of(problem, "water.multiple").is_log);
+}
+
+// Where the rig is, the prior costs nothing; a spread off, it costs 1.
+TEST(FitProblem, CostsASpreadOne) {
+    const FitProblem problem = problem_of(free({"aim", "water"}));
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(std::ssize(problem.numbers));
+    const auto cost = [&] { return (problem.prior_rows * x - problem.prior_means).squaredNorm(); };
+    EXPECT_NEAR(cost(), 0.0, kRounding);
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+        x.setZero();
+        x(k) = problem.numbers[static_cast<std::size_t>(k)].spread;
+        EXPECT_NEAR(cost(), 1.0, kRounding) << problem.numbers[static_cast<std::size_t>(k)].key;
     }
 }
 
-// Of vignetting or aims one number may be told where the others are not.
-TEST(FitProblem, TakesNumbersByTheirKeys) {
-    FitOptions options;
-    const auto keys = [&](const std::vector<std::string>& asked) {
-        options.free = asked;
-        std::vector<std::string> found;
-        for (const FreeNumber& one : fit_problem(fit_rig({}), options, {.widest_rad = 1.0}).free)
-            if (one.group != kFloorColour) found.push_back(one.key);
-        return found;
-    };
-    const std::vector<std::string> two{"strobe.aft.aim_across_deg", "camera.vignetting.a1"};
-    EXPECT_EQ(keys(two), two);
-    EXPECT_EQ(keys({"camera.vignetting.a2", "vignetting"}).size(), 3U);
-    EXPECT_EQ(keys({"gain.R"}).front(), "gain.R");
-    try {
-        keys({"strobe.stern.aim_along_deg"});
-        ADD_FAILURE();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "--free: found 'strobe.stern.aim_along_deg'; allowed: "
-                     "strobe.fore.aim_along_deg, strobe.fore.aim_across_deg, "
-                     "strobe.aft.aim_along_deg, strobe.aft.aim_across_deg");
-    }
-    // The first strobe's power is what the others' are relative to.
-    EXPECT_THROW(keys({"strobe.fore.power"}), InputError);
-}
-
-TEST(FitProblem, ABeamOfItsOwnHasItsOwnPower) {
-    FitOptions options;
-    options.free = {{"beam"}};
-    const auto is_power_fixed = [&] {
-        const FitProblem problem = fit_problem(fit_rig({}), options, {.widest_rad = 1.0});
-        return std::ranges::count(words_fixed_in(problem), "power") > 0;
-    };
-    EXPECT_TRUE(is_power_fixed());
-    options.has_beam_each = true;
-    EXPECT_FALSE(is_power_fixed());
+TEST(FitProblem, FactorsAreSearchedForByTheirLogarithm) {
+    const FitProblem problem = problem_of(free({"power"}));
+    const FitNumber& aft = number_of(problem, "strobe.aft.power");
+    EXPECT_DOUBLE_EQ(aft.shown(0.0), 0.8);
+    EXPECT_DOUBLE_EQ(aft.shown(std::log(1.5)), 1.2);
+    EXPECT_DOUBLE_EQ(aft.shown_slope(std::log(1.5)), 1.2);
 }
 
 TEST(FitProblem, TellsALensInTheRigsUnits) {
     const RigText rig{std::filesystem::path(APHOTIC_SOURCE_DIR "/scenes/habcam-optics.toml")};
-    const Strobe first = rig.rig().strobes[0];
-    FitOptions options;
+    FitOptions options = free({"beam"});
     options.beam = FitBeamKind::Optics;
-    options.free = {{"beam"}};
-    const FitProblem problem = fit_problem(rig, options, {.widest_rad = 1.0});
-    const FreeNumber& focal_length = problem.free.front();
+    const Strobe first = rig.rig().strobes[0];
+    const FitProblem problem = problem_of(options, rig);
+    const FitNumber& focal_length = problem.numbers.front();
     EXPECT_EQ(focal_length.key, "strobe." + first.name + ".beam.focal_length_mm");
-    EXPECT_DOUBLE_EQ(focal_length.per_unit * focal_length.start,
-                     1e3 * std::get<BeamOptics>(first.beam.pattern).focal_length_m);
+    EXPECT_NEAR(focal_length.shown(0.0),
+                1e3 * std::get<BeamOptics>(first.beam.pattern).focal_length_m,
+                1e-9);
 }
 
-TEST(FitProblem, NamesWhatIsAsTheRigHasIt) {
-    FitOptions options;
-    options.free = {{"aim", "water.multiple", "altitude"}};
-    const FitAngles angles{.widest_rad = 1.0};
-    EXPECT_EQ(
-        words_fixed_in(fit_problem(fit_rig({}), options, angles)),
-        (std::vector<std::string>{"beam", "power", "vignetting", "floor", "attitude", "gain"}));
-    options.free.reset();
-    EXPECT_EQ(words_fixed_in(fit_problem(fit_rig({}), options, angles)),
-              (std::vector<std::string>{"floor", "altitude", "attitude", "gain"}));
+TEST(FitProblem, ALensOfAnyKindIsNaturalUnlessItIsToBeRadial) {
+    std::string text = fit_rig({}).text();
+    const std::size_t at = text.find("vignetting");
+    text.erase(at, text.find('\n', at) - at);
+    const RigText none(text, "none.toml", {});
+    FitOptions options = free({"vignetting"});
+    EXPECT_EQ(keys_of(options, none), Keys{"camera.vignetting.cosine"});
+    options.has_radial_vignetting = true;
+    EXPECT_EQ(keys_of(options, none).front(), "camera.vignetting.a1");
 }
 
-// The first strobe of a beam that shines has the power that the others are told by.
-TEST(FitProblem, AStrobeThatIsOffIsNoReference) {
-    FitOptions options;
-    options.free = {{"power"}};
-    const auto powers = [&](const char* off) {
-        RigText rig = fit_rig({});
-        if (*off != '\0') rig.set(fmt::format("strobe.{}.power", off), 0.0);
-        std::vector<std::string> keys;
-        for (const FreeNumber& one : fit_problem(rig, options, {.widest_rad = 1.0}).free)
-            if (one.group == "power") keys.push_back(one.key);
-        return keys;
-    };
-    EXPECT_EQ(powers(""), std::vector<std::string>{"strobe.aft.power"});
-    EXPECT_EQ(powers("fore"), std::vector<std::string>{});
-    EXPECT_EQ(powers("aft"), std::vector<std::string>{});
+TEST(FitProblem, AStrobeThatIsOffHasNoPower) {
+    RigText rig = fit_rig({});
+    rig.set("strobe.fore.power", 0.0);
+    EXPECT_EQ(keys_of(free({"power"}), rig), Keys{"strobe.aft.power"});
 }
 
 }  // namespace

@@ -104,33 +104,6 @@ TEST_F(FitSamplesOfAnImage, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
     }
 }
 
-// Of a slope a mean is its middle's, whatever the blocks.
-TEST(FitSamples, CoarserBlocksAreMeansOfWholeOnes) {
-    FitSamples fine{.places = fit_places(kWidth_px, kHeight_px, 12)};  // of 2 pixels
-    FitImage image{.name = "a", .sled = {2.0, 0.0, 0.0}};
-    for (std::size_t i = 0; i < fine.places.size(); ++i) {
-        for (std::size_t c = 0; c < kChannels; ++c)
-            image.signal.push_back(slope(fine.places.columns[i], fine.places.rows[i]));
-    }
-    image.signal[0] = std::nanf("");  // of 9 in its block
-    fine.images = {image};
-    constexpr int kCoarse = 4;
-    const FitSamples coarse = in_blocks(fine, kCoarse);
-    ASSERT_EQ(coarse.places.block_px, 6);
-    ASSERT_EQ(coarse.places.size(), 8U);
-    ASSERT_EQ(coarse.images.front().signal.size(), 24U);
-    for (std::size_t k = 1; k < coarse.images.front().signal.size(); ++k) {
-        const std::size_t place = k / kChannels;
-        EXPECT_NEAR(coarse.images.front().signal[k],
-                    slope(coarse.places.columns[place], coarse.places.rows[place]),
-                    kRounding * 100.0F);
-    }
-    const float whole = slope(coarse.places.columns[0], coarse.places.rows[0]);
-    const float without_first = (9.0F * whole - slope(1.0, 1.0)) / 8.0F;
-    EXPECT_NEAR(coarse.images.front().signal[0], without_first, kRounding * 100.0F);
-    EXPECT_EQ(in_blocks(fine, 12).places.block_px, 2);
-}
-
 // One sample of a block's four red ones, or eight green ones, is over a hundredth.
 TEST_F(FitSamplesOfAnImage, ASaturatedBlockIsLeftOutInItsChannel) {
     const FitSamples found = samples(1);

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -26,13 +26,16 @@ RigText scene(const std::string& name) {
     return RigText(fs::path(APHOTIC_SOURCE_DIR) / "scenes" / name);
 }
 
+// As a fit leaves it that finds the rig as it is.
 FitResult start_of(const RigText& rig, const FitOptions& options) {
     FitResult result;
-    result.state = fit_problem(rig, options, {.widest_rad = 1.0, .block_rad = 0.02}).state;
-    Eigen::Index parts = 0;
-    for (const FitBeam& beam : result.state.beams) parts += static_cast<Eigen::Index>(beam.parts());
-    result.shares = Eigen::VectorXd::Constant(parts, 1.0);
+    result.state = fit_problem(rig, options, 1.0, 0.02).start;
     return result;
+}
+
+// Of a beam of cones: these shares of its flux, times a factor.
+void set_shares(FitBeam& beam, const std::vector<double>& shares) {
+    for (std::size_t k = 0; k < shares.size(); ++k) beam.coefficient(k) = std::log(shares[k]);
 }
 
 Rig written(const RigText& rig, const FitResult& result) {
@@ -51,9 +54,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(FittedRig, EachStrobeHasTheConesThatWereFittedToIt) {
     const RigText rig = scene("habcam.toml");
     FitResult result = start_of(rig, {.beam = FitBeamKind::Cones, .has_beam_each = true});
-    ASSERT_EQ(result.shares.size(), 12);
-    for (Eigen::Index s = 0; s < 4; ++s)
-        result.shares.segment(3 * s, 3) << 0.1 * static_cast<double>(s + 1), 0.2, 0.3;
+    ASSERT_EQ(result.state.beams.size(), 4U);
+    for (std::size_t s = 0; s < 4; ++s)
+        set_shares(result.state.beams[s], {0.1 * static_cast<double>(s + 1), 0.2, 0.3});
     const Rig fitted = written(rig, result);
     for (std::size_t s = 0; s < 4; ++s) {
         const double flux = 0.1 * static_cast<double>(s + 1) + 0.5;
@@ -74,8 +77,8 @@ TEST(FittedRig, BeamsThatAreAlikeShareOne) {
     const RigText rig(twice, "twice.toml", {});
     ASSERT_EQ(rig.rig().strobes[3].beam.name, "other");
     FitResult result = start_of(rig, {.beam = FitBeamKind::Cones});
-    ASSERT_EQ(result.shares.size(), 3);
-    result.shares << 0.5, 0.25, 0.25;
+    ASSERT_EQ(result.state.beams.size(), 1U);
+    set_shares(result.state.beams[0], {0.5, 0.25, 0.25});
     for (const Strobe& strobe : written(rig, result).strobes)
         EXPECT_NEAR(strobe.beam.cones[0].weight, 0.5, kRounding) << strobe.name;
 }
@@ -84,7 +87,7 @@ TEST(FittedRig, BeamsThatAreAlikeShareOne) {
 TEST(FittedRig, SharesAreOfTheFlux) {
     const RigText rig(replaced(scene("habcam.toml").text(), "\"flux\"", "\"literal\""), "", {});
     FitResult result = start_of(rig, {.beam = FitBeamKind::Cones});
-    result.shares << 0.5, 0.25, 0.25;
+    set_shares(result.state.beams[0], {0.5, 0.25, 0.25});
     const Beam beam = written(rig, result).strobes[0].beam;
     EXPECT_EQ(beam.weights, ConeWeights::Flux);
     EXPECT_NEAR(beam.cones[1].weight, 0.25, kRounding);
@@ -94,8 +97,8 @@ TEST(FittedRig, LensesAreThoseThatWereFitted) {
     const RigText rig = scene("habcam-optics.toml");
     FitResult result = start_of(rig, {.beam = FitBeamKind::Optics});
     ASSERT_EQ(result.state.beams.size(), 2U);
-    result.state.beams[0].shape(0) = 0.071;
-    result.state.beams[1].shape(1) = 0.043;
+    result.state.beams[0].coefficient(0) = std::log(0.071);
+    result.state.beams[1].coefficient(1) = std::log(0.043);
     const Rig fitted = written(rig, result);
     const Rig was = rig.rig();
     for (std::size_t s = 0; s < 4; ++s) {
@@ -112,12 +115,12 @@ TEST(FittedRig, LensesAreThoseThatWereFitted) {
 TEST(FittedRig, IsWrittenAgain) {
     const RigText rig(replaced(scene("habcam.toml").text(), "fresnel", "fitted"), "rig.toml", {});
     FitResult result = start_of(rig, {.beam = FitBeamKind::Cosine});
-    result.state.beams.front().shape(0) = 3.0;
+    result.state.beams.front().coefficient(0) = std::log(3.0);
     const Rig fitted = written(rig, result);
     ASSERT_EQ(fitted.strobes[0].beam.cones.size(), 1U);
     EXPECT_NEAR(fitted.strobes[0].beam.cones[0].exponent, 3.0, kRounding);
     // Half as bright at 60 degrees, without the digits that a rounding leaves.
-    result.state.beams.front().shape(0) = 1.0;
+    result.state.beams.front().coefficient(0) = 0.0;
     const TempFolder folder;
     write_fitted_rig(rig, result, folder.path());
     const std::string toml = read_text_file(folder.path() / kFittedRig);
@@ -125,7 +128,7 @@ TEST(FittedRig, IsWrittenAgain) {
     EXPECT_FALSE(has(toml, "0000000"));
 
     result = start_of(rig, {.beam = FitBeamKind::Cones});
-    result.shares << 0.5, 0.25, 0.25;
+    set_shares(result.state.beams[0], {0.5, 0.25, 0.25});
     EXPECT_NEAR(written(rig, result).strobes[0].beam.cones[0].weight, 0.5, kRounding);
 }
 
@@ -143,6 +146,32 @@ TEST(FittedRig, LampsThatWereNotFittedKeepTheirFigures) {
     EXPECT_EQ(fitted.number("strobe.fore.luminous_flux_lm"), 8000.0);
     EXPECT_FALSE(fitted.has("strobe.fore.power"));
     EXPECT_EQ(fitted.number("sled.altitude_offset_m"), 0.05);
+    // Half as bright as the others, of four that together stay as bright as they were.
+    result.state.power[0] *= 0.5;
+    write_fitted_rig(rig, result, folder.path());
+    EXPECT_NEAR(*RigText(folder.path() / kFittedRig).number("strobe.fore.luminous_flux_lm"),
+                8000.0 * 4.0 / 7.0,
+                1e-6);
+}
+
+TEST(FittedRig, LeavesNoBeamThatNoStrobeHas) {
+    const RigText rig = scene("habcam.toml");
+    const TempFolder folder;
+    write_fitted_rig(rig, start_of(rig, {.beam = FitBeamKind::Cosine}), folder.path());
+    const std::string toml = read_text_file(folder.path() / kFittedRig);
+    EXPECT_TRUE(has(toml, "[beam.fitted]"));
+    EXPECT_FALSE(has(toml, "fresnel"));
+}
+
+// cos^n of a rig without a lens's darkening.
+TEST(FittedRig, HasTheLens) {
+    FitOptions options;
+    options.free = {{"vignetting"}};
+    const RigText rig = scene("habcam.toml");
+    FitResult result = start_of(rig, options);
+    result.state.vignetting = {3.25};
+    const Rig fitted = written(rig, result);
+    EXPECT_EQ(std::get<NaturalVignetting>(*fitted.camera.vignetting).exponent, 3.25);
 }
 
 }  // namespace

@@ -44,13 +44,9 @@ void add_fitted(Texts& texts) {
     const TempFolder folder;
     const RigText rig(fs::path(APHOTIC_SOURCE_DIR) / "scenes/habcam.toml");
     FitResult result;
-    result.state = fit_problem(rig,
-                               {.beam = FitBeamKind::Cosine, .has_beam_each = true},
-                               {.widest_rad = 1.0, .block_rad = 0.02})
-                       .state;
-    Eigen::Index parts = 0;
-    for (const FitBeam& beam : result.state.beams) parts += static_cast<Eigen::Index>(beam.parts());
-    result.shares = Eigen::VectorXd::LinSpaced(parts, 0.5, 1.75);
+    result.state =
+        fit_problem(rig, {.beam = FitBeamKind::Cosine, .has_beam_each = true}, 1.0, 0.02).start;
+    for (double& power : result.state.power) power *= 1.125 + power;
     write_fitted_rig(rig, result, folder.path());
     texts["a fitted rig"] = read_text_file(folder.path() / kFittedRig);
 }

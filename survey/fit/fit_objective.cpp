@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fit/fit_objective.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr Index kPoseNumbers = FitLight::kPose;
+constexpr double kFirstTexture = 0.2;
+constexpr int kRoundsOfTexture = 3;  // that begin
+
+// W with W^T W = Sigma^-1.
+MatrixXd whitening(const MatrixXd& scale) {
+    return scale.llt().matrixL().solve(MatrixXd::Identity(scale.rows(), scale.cols()));
+}
+
+// Adds what residuals of variance 1, a row of slopes each, tell.
+struct Weighed {
+    double freedom;
+    double channels;
+    Curvature curvature;
+
+    // w of what is off by d, whitened.
+    [[nodiscard]] double weight(const VectorXd& d) const {
+        if (curvature == Curvature::Expected)
+            return (freedom + channels) / (freedom + channels + 2.0);
+        return (freedom + channels) / (freedom + d.squaredNorm());
+    }
+    // Of -(2 w^2 / (nu + q)) J^T d d^T J, what stands beside J^T d.
+    [[nodiscard]] double bend(double w) const {
+        return curvature == Curvature::Observed ? w * std::sqrt(2.0 / (freedom + channels)) : 0.0;
+    }
+};
+
+// Means over cells of a grid, of the residual and of its slopes.
+struct Cells {
+    Index across;
+    Index down;
+    Index q;
+    VectorXd residual;  // NaN where there is none
+    BlockLight::Rows slopes;
+
+    Cells(const ImageView& view, Index channels, const FitPlaces& places)
+        : across(static_cast<Index>(places.across())),
+          down(static_cast<Index>(places.down())),
+          q(channels),
+          residual(view.residual),
+          slopes(view.slopes) {}
+
+    // The same of two by two, whose three details `take` gets where all four have a mean. What does
+    // not come in pairs is left out.
+    template <typename Take>
+    [[nodiscard]] Cells halved(const Take& take) const {
+        Cells half = *this;
+        half.across = across / 2;
+        half.down = down / 2;
+        const Index count = half.across * half.down;
+        half.residual.setConstant(count * q, std::numeric_limits<double>::quiet_NaN());
+        half.slopes.setZero(count * q, slopes.cols());
+        BlockLight::Rows detail(q, slopes.cols());
+        // Right less left, lower less upper, and across.
+        constexpr std::array<std::array<double, 4>, 3> kSigns{
+            {{-1.0, 1.0, -1.0, 1.0}, {-1.0, -1.0, 1.0, 1.0}, {1.0, -1.0, -1.0, 1.0}}};
+        for (Index cell = 0; cell < count; ++cell) {
+            const Index first = (cell / half.across * 2 * across + cell % half.across * 2) * q;
+            const std::array<Index, 4> parts{
+                first, first + q, first + across * q, first + (across + 1) * q};
+            double seen = 0.0;
+            VectorXd sum = VectorXd::Zero(q);
+            auto mean = half.slopes.middleRows(cell * q, q);
+            for (const Index part : parts) {
+                if (!residual.segment(part, q).allFinite()) continue;
+                seen += 1.0;
+                sum += residual.segment(part, q);
+                mean += slopes.middleRows(part, q);
+            }
+            if (seen == 0.0) continue;
+            half.residual.segment(cell * q, q) = sum / seen;
+            mean /= seen;
+            if (seen < 4.0) continue;
+            for (const auto& signs : kSigns) {
+                VectorXd d = VectorXd::Zero(q);
+                detail.setZero();
+                for (std::size_t k = 0; k < parts.size(); ++k) {
+                    d += 0.5 * signs[k] * residual.segment(parts[k], q);
+                    detail += 0.5 * signs[k] * slopes.middleRows(parts[k], q);
+                }
+                take(d, detail);
+            }
+        }
+        return half;
+    }
+};
+
+// Anderson's acceleration: where steps follow each other slowly along a valley, the point that the
+// last few lead to, taken for linear.
+class Anderson {
+  public:
+    // The step to take from x in place of dx. errors: of the numbers, by which they compare.
+    VectorXd step(const VectorXd& x, const VectorXd& dx, const VectorXd& errors) {
+        if (x_.size() > 0) {
+            keep(moves_, x - x_);
+            keep(changes_, dx - dx_);
+        }
+        x_ = x;
+        dx_ = dx;
+        if (moves_.cols() == 0) return dx;
+        const MatrixXd F = errors.cwiseInverse().asDiagonal() * changes_;
+        const MatrixXd normal = F.transpose() * F;
+        const MatrixXd tied =
+            normal + kTie * normal.trace() * MatrixXd::Identity(normal.rows(), normal.cols());
+        return dx -
+               (moves_ + changes_) * tied.llt().solve(F.transpose() * dx.cwiseQuotient(errors));
+    }
+
+  private:
+    static constexpr Index kDepth = 3;
+    static constexpr double kTie = 1e-6;
+    static void keep(MatrixXd& last, const VectorXd& next) {
+        const Index kept = std::min(last.cols(), kDepth - 1);
+        MatrixXd longer(next.size(), kept + 1);
+        longer << last.rightCols(kept), next;
+        last = std::move(longer);
+    }
+
+    VectorXd x_;
+    VectorXd dx_;
+    MatrixXd moves_;    // the last to the right
+    MatrixXd changes_;  // of dx
+};
+
+}  // namespace
+
+FitObjective::FitObjective(const RigText& rig,
+                           const FitSamples& samples,
+                           const FitOptions& options,
+                           const FitLight& light,
+                           const FitProblem& problem)
+    : rig_(rig),
+      samples_(samples),
+      light_(light),
+      problem_(problem),
+      threads_(options.threads),
+      channels_(rig.rig().camera.sensor.is_mono() ? 1 : kChannels),
+      levels_(0),
+      pose_weight_(1.0 / (options.altitude_error_m * options.altitude_error_m),
+                   1.0 / (options.attitude_error_rad * options.attitude_error_rad),
+                   1.0 / (options.attitude_error_rad * options.attitude_error_rad)) {
+    std::vector<Sled> sleds;
+    for (const FitImage& image : samples.images) sleds.push_back(image.sled);
+    paths_ = light.paths(sleds);
+    const std::size_t across = samples.places.across();
+    const std::size_t down = samples.places.down();
+    while ((std::min(across, down) >> (levels_ + 1)) > 0) ++levels_;
+}
+
+PathLight FitObjective::path_light(const FitState& state) const {
+    return {rig_, state.water, state.tint, paths_};
+}
+
+ImageView FitObjective::view(const FitPoint& point,
+                             const FitState& state,
+                             const PathLight& light,
+                             std::size_t image) const {
+    Sled sled = samples_.images[image].sled;
+    const Vector3d& off = point.pose[image];
+    sled.altitude_m += off.x();
+    sled.pitch_rad += off.y();
+    sled.roll_rad += off.z();
+    return view_of(point, state, light, sled, &samples_.images[image].signal);
+}
+
+// Without a signal the residual is 0.
+ImageView FitObjective::view_of(const FitPoint& point,
+                                const FitState& state,
+                                const PathLight& light,
+                                const Sled& sled,
+                                const std::vector<float>* signal) const {
+    ImageView view{.light = light_.at(state, light, sled, problem_.places())};
+    const auto q = static_cast<Index>(channels_);
+    const auto numbers = std::ssize(problem_.numbers);
+    const auto places = static_cast<Index>(samples_.places.size());
+    view.residual.setConstant(places * q, std::numeric_limits<double>::quiet_NaN());
+    view.slopes.setZero(places * q, numbers + q + kPoseNumbers);
+    view.level.setZero(q);
+    view.level_slopes.setZero(q, view.slopes.cols());
+    double brightest = -std::numeric_limits<double>::infinity();
+    for (const double logarithm : view.light.logarithm)
+        if (logarithm > brightest) brightest = logarithm;  // NaN is not
+    const double darkest = brightest + std::log(kDarkestBlock);
+    VectorXd slope(numbers);
+    for (Index k = 0; k < numbers; ++k)
+        slope(k) = problem_.numbers[static_cast<std::size_t>(k)].slope(point.x(k));
+    for (Index place = 0; place < places; ++place) {
+        VectorXd off(q);
+        for (Index c = 0; c < q; ++c) {
+            const Index row = place * kChannels + c;
+            const double model = view.light.logarithm(row);
+            const double seen = signal == nullptr ? 0.0 : (*signal)[static_cast<std::size_t>(row)];
+            off(c) = signal == nullptr ? 0.0 : std::log(seen) - model - point.x(numbers + c);
+            if (!(model > darkest) || (signal != nullptr && !(seen > 0.0)))
+                off(c) = std::numeric_limits<double>::quiet_NaN();
+        }
+        if (!off.allFinite()) continue;
+        view.residual.segment(place * q, q) = off;
+        auto rows = view.slopes.middleRows(place * q, q);
+        rows.leftCols(numbers) =
+            view.light.slopes.middleRows(place * kChannels, q) * slope.asDiagonal();
+        rows.middleCols(numbers, q).setIdentity();
+        rows.rightCols(kPoseNumbers) = view.light.by_pose.middleRows(place * kChannels, q);
+        view.level += off;
+        view.level_slopes += rows;
+        ++view.blocks;
+    }
+    if (view.blocks > 0) {
+        view.level /= static_cast<double>(view.blocks);
+        view.level_slopes /= static_cast<double>(view.blocks);
+    }
+    return view;
+}
+
+ImageTerms FitObjective::terms_of(const ImageView& view,
+                                  const FitPoint& point,
+                                  const Vector3d& pose,
+                                  Curvature curvature) const {
+    const auto q = static_cast<Index>(channels_);
+    const Index columns = view.slopes.cols();
+    const Index kept = columns - kPoseNumbers;
+    ImageTerms terms{.H = MatrixXd::Zero(kept, kept),
+                     .g = VectorXd::Zero(kept),
+                     .pose_answer = MatrixXd::Zero(kPoseNumbers, kept + 1),
+                     .moments = {{levels_, MatrixXd::Zero(q, q)}, MatrixXd::Zero(q, q)},
+                     .weights = std::vector<double>(levels_ + 1, 0.0)};
+    if (2 * view.blocks < samples_.places.size()) return terms;
+    const Weighed levels{kLevelFreedom, static_cast<double>(q), curvature};
+    const Weighed details{kDetailFreedom, static_cast<double>(q), curvature};
+    const auto most = (static_cast<Index>(samples_.places.size()) + 1) * q;
+    BlockLight::Rows rows(most, columns);  // times the root of their weights
+    BlockLight::Rows bends(most / q, columns);
+    Index used = 0;
+    VectorXd g = VectorXd::Zero(columns);
+    BlockLight::Rows white(q, columns);
+    const auto add = [&](const Weighed& weighed,
+                         const MatrixXd& W,
+                         const VectorXd& d,
+                         const BlockLight::Rows& slopes,
+                         MatrixXd& moments,
+                         double& weights) {
+        white.noalias() = W * slopes;
+        const VectorXd off = W * d;
+        const double w = weighed.weight(off);
+        rows.middleRows(used * q, q) = std::sqrt(w) * white;
+        const VectorXd along = white.transpose() * off;
+        g += w * along;
+        bends.row(used) = weighed.bend(w) * along.transpose();
+        moments += w * d * d.transpose();
+        weights += w;
+        ++used;
+    };
+    add(levels,
+        whitening(point.texture.level),
+        view.level,
+        view.level_slopes,
+        terms.moments.level,
+        terms.weights.back());
+
+    Cells cells(view, q, samples_.places);
+    for (std::size_t level = 0; level < levels_; ++level) {
+        const MatrixXd W = whitening(point.texture.details[level]);
+        cells = cells.halved([&](const VectorXd& d, const BlockLight::Rows& slopes) {
+            add(details, W, d, slopes, terms.moments.details[level], terms.weights[level]);
+        });
+    }
+    rows.conservativeResize(used * q, columns);
+    bends.conservativeResize(used, columns);
+    MatrixXd H = MatrixXd::Zero(columns, columns);
+    H.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+    if (curvature == Curvature::Observed)
+        H.selfadjointView<Eigen::Lower>().rankUpdate(bends.transpose(), -1.0);
+    H = H.selfadjointView<Eigen::Lower>();
+    H /= point.dispersion;
+    g /= point.dispersion;
+    terms.H = H.topLeftCorner(kept, kept);
+    terms.g = g.head(kept);
+    if (!pose_weight_.allFinite()) return terms;
+    // The pose is eliminated.
+    const Eigen::Matrix3d own =
+        H.bottomRightCorner<3, 3>() + Eigen::Matrix3d(pose_weight_.asDiagonal());
+    MatrixXd other(kPoseNumbers, kept + 1);
+    other << g.tail<3>() - pose_weight_.cwiseProduct(pose), H.bottomLeftCorner(kPoseNumbers, kept);
+    terms.pose_answer = own.ldlt().solve(other);
+    terms.H -= H.topRightCorner(kept, kPoseNumbers) * terms.pose_answer.rightCols(kept);
+    terms.g -= H.topRightCorner(kept, kPoseNumbers) * terms.pose_answer.col(0);
+    return terms;
+}
+
+std::vector<ImageTerms> FitObjective::terms_at(const FitPoint& point, Curvature curvature) const {
+    const FitState state = state_at(point);
+    const PathLight light = path_light(state);
+    std::vector<ImageTerms> terms(samples_.images.size());
+    parallel_for(terms.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
+        terms[i] = terms_of(view(point, state, light, i), point, point.pose[i], curvature);
+    });
+    return terms;
+}
+
+MatrixXd FitObjective::information_at(const FitPoint& point, const Sled& sled) const {
+    const FitState state = state_at(point);
+    const ImageView view = view_of(point, state, path_light(state), sled, nullptr);
+    return terms_of(view, point, Vector3d::Zero(), Curvature::Expected).H;
+}
+
+MatrixXd FitObjective::curvature_of(const std::vector<ImageTerms>& terms) const {
+    const auto numbers = std::ssize(problem_.numbers);
+    const auto all = numbers + static_cast<Index>(channels_);
+    MatrixXd A = MatrixXd::Zero(all, all);
+    A.topLeftCorner(numbers, numbers) = problem_.prior_rows.transpose() * problem_.prior_rows;
+    for (const ImageTerms& one : terms) A += one.H;
+    return A;
+}
+
+VectorXd FitObjective::gradient_of(const FitPoint& point,
+                                   const std::vector<ImageTerms>& terms) const {
+    const auto numbers = std::ssize(problem_.numbers);
+    VectorXd g = VectorXd::Zero(point.x.size());
+    g.head(numbers) = problem_.prior_rows.transpose() *
+                      (problem_.prior_means - problem_.prior_rows * point.x.head(numbers));
+    for (const ImageTerms& one : terms) g += one.g;
+    return g;
+}
+
+void FitObjective::learn_texture(const std::vector<ImageTerms>& terms,
+                                 TextureScales& texture) const {
+    const auto q = static_cast<Index>(channels_);
+    std::vector<double> weights(levels_ + 1, kFirst);
+    texture.level = kFirst * kFirstLevel * kFirstLevel * MatrixXd::Identity(q, q);
+    texture.details.assign(levels_,
+                           kFirst * kFirstDetail * kFirstDetail * MatrixXd::Identity(q, q));
+    for (const ImageTerms& one : terms) {
+        texture.level += one.moments.level;
+        for (std::size_t level = 0; level < levels_; ++level)
+            texture.details[level] += one.moments.details[level];
+        for (std::size_t level = 0; level <= levels_; ++level) weights[level] += one.weights[level];
+    }
+    texture.level /= weights.back();
+    for (std::size_t level = 0; level < levels_; ++level) texture.details[level] /= weights[level];
+}
+
+FitPoint FitObjective::first_point() const {
+    const auto q = static_cast<Index>(channels_);
+    const auto numbers = std::ssize(problem_.numbers);
+    FitPoint point{.x = VectorXd::Zero(numbers + q),
+                   .pose = std::vector<Vector3d>(samples_.images.size(), Vector3d::Zero()),
+                   .texture = {{levels_, kFirstTexture * kFirstTexture * MatrixXd::Identity(q, q)},
+                               MatrixXd::Identity(q, q)}};
+    const FitState state = state_at(point);
+    const PathLight light = path_light(state);
+    VectorXd level = VectorXd::Zero(q);
+    double images = 0.0;
+    for (std::size_t i = 0; i < samples_.images.size(); ++i) {
+        const ImageView seen = view(point, state, light, i);
+        if (2 * seen.blocks < samples_.places.size()) continue;
+        level += seen.level;
+        images += 1.0;
+    }
+    if (images == 0.0)
+        throw InputError(
+            "found no image of which half of the blocks are lit by the rig and seen; allowed: "
+            "images that are neither black nor saturated, of a rig that lights them");
+    point.x.tail(q) = level / images;
+    for (int round = 0; round < kRoundsOfTexture; ++round)
+        learn_texture(terms_at(point, Curvature::Majorant), point.texture);
+    return point;
+}
+
+FitPoint FitObjective::search(FitPoint point,
+                              double nearness,
+                              const std::function<void(int round)>& progress) const {
+    Anderson anderson;
+    for (int round = 0; round < kMostRounds; ++round) {
+        progress(round);
+        const std::vector<ImageTerms> terms = terms_at(point, Curvature::Majorant);
+        const VectorXd g = gradient_of(point, terms);
+        const Eigen::LLT<MatrixXd> solver(curvature_of(terms));
+        VectorXd dx = solver.solve(g);
+        const VectorXd errors =
+            solver.solve(MatrixXd::Identity(dx.size(), dx.size())).diagonal().cwiseSqrt();
+        dx = within_bounds(point.x, anderson.step(point.x, dx, errors));
+        point.x += dx;
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const MatrixXd& answer = terms[i].pose_answer;
+            point.pose[i] += answer.col(0) - answer.rightCols(dx.size()) * dx;
+        }
+        learn_texture(terms, point.texture);
+        constexpr int kFewestRounds = 6;  // steps are short before Anderson's are long
+        if (round + 1 >= kFewestRounds && (dx.cwiseAbs().array() < nearness * errors.array()).all())
+            break;
+    }
+    return point;
+}
+
+// No longer than kLongestStep spreads, and no further than a number goes.
+VectorXd FitObjective::within_bounds(const VectorXd& x, VectorXd dx) const {
+    double share = 1.0;
+    for (std::size_t k = 0; k < problem_.numbers.size(); ++k)
+        share = std::min(
+            share, kLongestStep * problem_.numbers[k].spread / std::abs(dx(static_cast<Index>(k))));
+    dx *= share;
+    for (std::size_t k = 0; k < problem_.numbers.size(); ++k) {
+        const FitNumber& number = problem_.numbers[k];
+        const auto at = static_cast<Index>(k);
+        dx(at) = std::clamp(x(at) + dx(at), number.least, number.most) - x(at);
+    }
+    return dx;
+}
+
+}  // namespace aphotic
