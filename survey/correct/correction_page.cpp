@@ -19,11 +19,6 @@ namespace {
 
 constexpr std::array kColours{"red", "green", "blue"};
 
-std::string percent(double share) {
-    constexpr double kPercent = 100.0;
-    return fmt::format("{:.3g}\xC2\xA0%", kPercent * share);  // a blank that does not break
-}
-
 std::string per_channel(const PerChannel& numbers) {
     return fmt::format(
         "{} red, {} green, {} blue", plain(numbers[0]), plain(numbers[1]), plain(numbers[2]));
@@ -184,7 +179,9 @@ PageList doubts(const RunOutcome& run) {
          {"clipped", "beyond what the file holds"}}};
     PageList items;
     for (const auto& [name, words] : kWords) {
-        items.emplace_back(name, fmt::format("{}: {}", percent(run.doubtful_share(name)), words));
+        // The blank does not break.
+        items.emplace_back(
+            name, fmt::format("{:.3g}\xC2\xA0%: {}", 100.0 * run.doubtful_share(name), words));
     }
     return items;
 }
