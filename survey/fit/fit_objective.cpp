@@ -134,7 +134,8 @@ class Anderson {
     static void keep(MatrixXd& last, const VectorXd& next) {
         const Index kept = std::min(last.cols(), kDepth - 1);
         MatrixXd longer(next.size(), kept + 1);
-        longer << last.rightCols(kept), next;
+        if (kept > 0) longer.leftCols(kept) = last.rightCols(kept);
+        longer.col(kept) = next;
         last = std::move(longer);
     }
 
