@@ -11,12 +11,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace aphotic {
 namespace {
@@ -29,28 +26,32 @@ constexpr double kNear = 0.2;  // of a number's error
 constexpr double kNearest = 0.05;
 constexpr double kFirstShare = 0.3;  // of the time
 
-FitSamples half_of(FitSamples samples, std::size_t split, std::size_t which) {
-    std::vector<FitImage> images;
-    for (std::size_t i = 0; i < samples.images.size(); ++i)
-        if ((i >> split) % 2 == which) images.push_back(std::move(samples.images[i]));
-    samples.images = std::move(images);
-    return samples;
+// Every other image, or pair of images, of those.
+FitSamples half_of(const FitSamples& samples,
+                   const std::vector<std::size_t>& images,
+                   std::size_t split,
+                   std::size_t which) {
+    FitSamples half{.places = samples.places};
+    for (std::size_t k = 0; k < images.size(); ++k)
+        if ((k >> split) % 2 == which) half.images.push_back(samples.images[images[k]]);
+    return half;
 }
 
 // Edges are found from as far away as they are soft, and aims may be some degrees off: where blocks
-// are finer, a search begins with softer ones.
-VectorXd start_of(const FitObjective& objective,
+// are finer, a search for cones begins with softer ones.
+FitPoint start_of(const FitObjective& objective,
                   const RigText& text,
                   const FitSamples& samples,
                   const FitOptions& options,
                   const FitLight& light,
                   double widest_rad) {
+    FitPoint start = objective.first_point();
     constexpr double kSoft_rad = 0.1;
-    if (options.beam != FitBeamKind::Cones || light.block_rad() > kSoft_rad)
-        return objective.first_point().x;
+    if (options.beam != FitBeamKind::Cones || light.block_rad() > kSoft_rad) return start;
     const FitProblem problem = fit_problem(text, options, widest_rad, kSoft_rad);
     const FitObjective softer(text, samples, options, light, problem);
-    return softer.search(softer.first_point(), kNear, [](int) {}).x;
+    start.x = softer.search(softer.first_point(), kNear, [](int) {}).x;
+    return start;
 }
 
 // Where as many images again would bring most, level flight at another altitude.
@@ -258,8 +259,7 @@ FitResult fit(const RigText& text,
         watch.looks_wrong({*mistake});
         result.looks_wrong.push_back(*mistake);
     }
-    FitPoint start = objective.first_point();
-    start.x = start_of(objective, text, samples, options, light, widest_rad);
+    const FitPoint start = start_of(objective, text, samples, options, light, widest_rad);
     FitPoint point = objective.search(start, kNear, [&](int round) {
         result.rounds = round;
         watch.progress("fitting", kFirstShare * round / kMostRounds);
@@ -269,18 +269,20 @@ FitResult fit(const RigText& text,
         ++result.rounds;
         watch.progress("fitting", kFirstShare + (1.0 - kFirstShare) * round / kMostRounds);
     });
-    const FitErrors errors =
-        errors_of(objective, problem, point, [&](std::size_t split, std::size_t which) {
-            const FitSamples some = half_of(samples, split, which);
-            const FitObjective half(text, some, options, light, problem);
-            FitPoint from = half.first_point();
-            from.x = start.x;
-            from.dispersion = point.dispersion;
-            return half.search(std::move(from), kNear, [&](int round) {
-                watch.progress("comparing halves",
-                               0.5 * (static_cast<double>(which) + 1.0 * round / kMostRounds));
-            });
+    const std::vector<std::size_t> counted = objective.counted(point);
+    const auto answer_of_half = [&](std::size_t split, std::size_t which) {
+        const FitSamples some = half_of(samples, counted, split, which);
+        const FitObjective half(text, some, options, light, problem);
+        FitPoint from = start;
+        from.pose.assign(some.images.size(), Eigen::Vector3d::Zero());
+        from.dispersion = point.dispersion;
+        const double done = static_cast<double>(2 * split + which);
+        return half.search(std::move(from), kNear, [&](int round) {
+            watch.progress("comparing halves",
+                           (done + static_cast<double>(round) / kMostRounds) / (2.0 * kSplits));
         });
+    };
+    const FitErrors errors = errors_of(objective, problem, point, answer_of_half);
     result.state = objective.state_at(point);
     result.are_maps = samples.are_maps;
     result.block_px = samples.places.block_px;

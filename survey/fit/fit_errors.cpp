@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -112,7 +113,7 @@ VectorXd by_word(const FitProblem& problem, const VectorXd& squares) {
 }  // namespace
 
 double dispersion_at(const FitObjective& objective, const FitPoint& point) {
-    if (point.pose.size() < kFewestImages) return point.dispersion;
+    if (objective.counted(point).size() < kFewestImages) return point.dispersion;
     const Sandwich of = sandwich_at(objective, point);
     // S at the point is divided by the dispersion that it has.
     return std::max(1.0,
@@ -142,15 +143,18 @@ FitErrors errors_of(const FitObjective& objective,
     const MatrixXd keep = without_common_power(problem);
     const Sandwich sandwich = sandwich_at(objective, point);
     const std::vector<RowVectorXd> slopes = map_slopes(objective, point);
-    const bool are_few = point.pose.size() < kFewestImages;
+    const bool are_few = objective.counted(point).size() < kFewestImages;
     const MatrixXd C = are_few ? sandwich.inverse : sandwich.covariance();
     FitErrors errors{.covariance = keep * C.topLeftCorner(count, count) * keep.transpose(),
                      .unevenness = std::sqrt(mean_variance(slopes, C))};
     if (are_few) return errors;
     const MatrixXd wanted = sandwich.of_halves();
-    const VectorXd variances =
-        (keep * wanted.topLeftCorner(count, count) * keep.transpose()).diagonal();
-    const double map_variance = mean_variance(slopes, wanted);
+    // Of what no image shows, such as the aim of a lamp that is off, halves differ by nothing.
+    constexpr double kNothing = std::numeric_limits<double>::min();
+    const VectorXd variances = (keep * wanted.topLeftCorner(count, count) * keep.transpose())
+                                   .diagonal()
+                                   .cwiseMax(kNothing);
+    const double map_variance = std::max(mean_variance(slopes, wanted), kNothing);
     VectorXd log_squares = VectorXd::Zero(count);
     double map_log_square = 0.0;
     for (std::size_t split = 0; split < kSplits; ++split) {

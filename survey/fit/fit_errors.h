@@ -19,8 +19,8 @@
 // together; the geometric mean over kSplits pairs of halves, for now and then one is lost, and at
 // least 1. It is measured alike for the map.
 //
-// Fewer than kFewestImages tell neither: their dispersion is what it was, kFirstDispersion, of
-// patchy floors, and C = A^-1.
+// Fewer than kFewestImages that count tell neither: their dispersion is what it was,
+// kFirstDispersion, of patchy floors, and C = A^-1.
 //
 // K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986, 13 (sandwich); R. M. Bell and D. F. McCaffrey,
 // Survey Methodology 28, 2002, 169 (CR3); F. Pauli, W. Racugno and L. Ventura, Statistica Sinica
@@ -52,7 +52,7 @@ struct FitErrors {
     Eigen::MatrixXd covariance;  // of the problem's numbers, less the common power
     double unevenness = 0.0;     // of the map's logarithm over the flight, its mean left out; rms
 };
-// half(0), half(1): the answers of every other image.
+// half(split, which): the answer of half of the images that count.
 [[nodiscard]] FitErrors errors_of(const FitObjective& objective,
                                   const FitProblem& problem,
                                   const FitPoint& point,

@@ -108,6 +108,7 @@ FitJson to_json(const FitResult& result) {
             {"floor_brightness_spread", result.level_spread},
             {"images", std::move(images)},
             {"covariance", covariance_json(result)},
+            {"dispersion", result.dispersion},
             {"rounds", result.rounds}};
 }
 

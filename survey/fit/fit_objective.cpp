@@ -247,7 +247,7 @@ ImageTerms FitObjective::terms_of(const ImageView& view,
                      .pose_answer = MatrixXd::Zero(kPoseNumbers, kept + 1),
                      .moments = {{levels_, MatrixXd::Zero(q, q)}, MatrixXd::Zero(q, q)},
                      .weights = std::vector<double>(levels_ + 1, 0.0)};
-    if (2 * view.blocks < samples_.places.size()) return terms;
+    if (!counts(view)) return terms;
     const Weighed levels{kLevelFreedom, static_cast<double>(q), curvature};
     const Weighed details{kDetailFreedom, static_cast<double>(q), curvature};
     const auto most = (static_cast<Index>(samples_.places.size()) + 1) * q;
@@ -320,6 +320,15 @@ std::vector<ImageTerms> FitObjective::terms_at(const FitPoint& point, Curvature 
     return terms;
 }
 
+std::vector<std::size_t> FitObjective::counted(const FitPoint& point) const {
+    const FitState state = state_at(point);
+    const PathLight light = path_light(state);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < samples_.images.size(); ++i)
+        if (counts(view(point, state, light, i))) found.push_back(i);
+    return found;
+}
+
 MatrixXd FitObjective::information_at(const FitPoint& point, const Sled& sled) const {
     const FitState state = state_at(point);
     const ImageView view = view_of(point, state, path_light(state), sled, nullptr);
@@ -375,7 +384,7 @@ FitPoint FitObjective::first_point() const {
     double images = 0.0;
     for (std::size_t i = 0; i < samples_.images.size(); ++i) {
         const ImageView seen = view(point, state, light, i);
-        if (2 * seen.blocks < samples_.places.size()) continue;
+        if (!counts(seen)) continue;
         level += seen.level;
         images += 1.0;
     }

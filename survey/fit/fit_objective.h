@@ -117,6 +117,8 @@ class FitObjective {
                                   double nearness,
                                   const std::function<void(int round)>& progress) const;
 
+    // The images of which enough is lit and seen, at a point.
+    [[nodiscard]] std::vector<std::size_t> counted(const FitPoint& point) const;
     // By image, at a point.
     [[nodiscard]] std::vector<ImageTerms> terms_at(const FitPoint& point,
                                                    Curvature curvature) const;
@@ -140,6 +142,9 @@ class FitObjective {
     }
 
   private:
+    [[nodiscard]] bool counts(const ImageView& view) const {
+        return 2 * view.blocks >= samples_.places.size();
+    }
     [[nodiscard]] ImageTerms terms_of(const ImageView& view,
                                       const FitPoint& point,
                                       const Eigen::Vector3d& pose,

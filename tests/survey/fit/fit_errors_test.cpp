@@ -132,6 +132,76 @@ TEST(FitErrors, PowersAreThoseOfTheRigTogether) {
     EXPECT_EQ(without_common_power(problem) * brighter, brighter);
 }
 
+// A fit's pieces at the rig that made the images.
+struct AtTheTruth {
+    RigText text = fit_rig({.width_px = 16, .height_px = 12});
+    FitSamples samples;
+    FitOptions options{.altitude_error_m = 0.0, .attitude_error_rad = 0.0};
+    FitLight light;
+    FitProblem problem;
+    FitObjective objective;
+    FitPoint point;
+
+    explicit AtTheTruth(FitSamples images)
+        : samples(std::move(images)),
+          light(text.rig(), samples.places),
+          problem(fit_problem(text, options, 1.0, light.block_rad())),
+          objective(text, samples, options, light, problem),
+          point(objective.search(objective.first_point(), 0.05, [](int) {})) {}
+};
+
+FitSamples forty_maps() {
+    std::vector<Sled> flown;
+    for (int i = 0; i < 40; ++i) flown.push_back({.altitude_m = 1.4 + 0.03 * i});
+    return fit_samples_of(fit_rig({.width_px = 16, .height_px = 12}).rig(), flown, 0.02, 17);
+}
+
+// Of noise that is another in each block, details are as independent as S takes them for. Of grains
+// of sand that are wider than blocks, they are not.
+TEST(FitErrors, DispersionIsOneOfWhiteNoise) {
+    constexpr double kChance = 0.35;  // of forty images
+    const auto dispersion_of = [](FitSamples samples) {
+        const AtTheTruth at(std::move(samples));
+        return dispersion_at(at.objective, at.point);
+    };
+    FitSamples samples = forty_maps();
+    EXPECT_NEAR(dispersion_of(samples), 1.0, kChance);
+    std::mt19937_64 dice(3);
+    for (FitImage& image : samples.images) {
+        constexpr double kBlock_m = 0.05;
+        const FloorTexture floor(0.3, dice());
+        for (std::size_t k = 0; k < image.signal.size(); ++k) {
+            const std::size_t place = k / kChannels;
+            image.signal[k] *= static_cast<float>(floor.at(kBlock_m * samples.places.columns[place],
+                                                           kBlock_m * samples.places.rows[place]));
+        }
+    }
+    EXPECT_GT(dispersion_of(samples), 1.0 + 2.0 * kChance);
+}
+
+// Halves that agree widen nothing; the errors grow as the halves differ.
+TEST(FitErrors, AreWidenedByWhatHalvesDifferBy) {
+    const AtTheTruth at(forty_maps());
+    const auto errors_by = [&](double apart) {
+        return errors_of(at.objective, at.problem, at.point, [&](std::size_t, std::size_t which) {
+            FitPoint half = at.point;
+            half.x.array() += which == 1 ? apart : 0.0;
+            return half;
+        });
+    };
+    constexpr double kFar = 30.0;
+    constexpr double kRounding = 1e-9;
+    const FitErrors alike = errors_by(0.0);
+    const FitErrors far = errors_by(kFar);
+    const FitErrors twice = errors_by(2.0 * kFar);
+    EXPECT_TRUE(alike.covariance.allFinite());
+    for (Eigen::Index k = 0; k < alike.covariance.rows(); ++k) {
+        EXPECT_GT(far.covariance(k, k), alike.covariance(k, k)) << k;
+        EXPECT_NEAR(twice.covariance(k, k) / far.covariance(k, k), 4.0, kRounding) << k;
+    }
+    EXPECT_NEAR(twice.unevenness / far.unevenness, 2.0, kRounding);
+}
+
 // Numbers that change nothing but how bright all is leave no unevenness.
 TEST(FitErrors, OfOnePowerNoMapIsUneven) {
     FitRigNumbers numbers{.width_px = 16, .height_px = 12};

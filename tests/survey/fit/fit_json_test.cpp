@@ -23,6 +23,7 @@ FitResult of_two_numbers() {
     result.images[2].sled.altitude_m = 1.0;
     result.block_px = 8;
     result.blocks = 700;
+    result.dispersion = 2.5;
     return result;
 }
 
@@ -41,6 +42,7 @@ TEST(FitJson, NumbersHaveTheirErrorsAndWhatWouldDetermineThem) {
     const auto& rows = json.at("covariance").at("rows");
     EXPECT_EQ(rows.at(0).at(0), 0.01);
     EXPECT_EQ(rows.at(1).at(1), 9.0);
+    EXPECT_EQ(json.at("dispersion"), 2.5);
     EXPECT_EQ(json.at("covariance").at("of").at(1), "strobe.fore.aim_along_deg");
     const auto& numbers = json.at("numbers");
     EXPECT_EQ(numbers.at(0).at("value"), 1.1);

@@ -360,6 +360,46 @@ TEST(Fit, FindsOutAPatternThatStaysInPlace) {
     EXPECT_EQ(result.looks_wrong[0].about, "pattern");
 }
 
+// Of strobes that fire at every other image the dark ones count for nothing, in halves of the
+// survey as well.
+TEST(Fit, LeavesOutWhatIsDark) {
+    constexpr double kRounding = 1e-6;
+    std::vector<double> altitudes_m;
+    for (int i = 0; i < 20; ++i) altitudes_m.push_back(1.4 + 0.05 * i);
+    const FitRigNumbers numbers{.width_px = 16, .height_px = 12};
+    const FitSamples lit = fit_samples_of(fit_rig(numbers).rig(), flown(altitudes_m), 0.02, 9);
+    FitSamples both = lit;
+    both.images.clear();
+    for (const FitImage& image : lit.images) {
+        both.images.push_back(image);
+        both.images.push_back(image);
+        std::ranges::fill(both.images.back().signal, 0.0F);
+    }
+    const FitResult of_lit = fit(fit_rig(numbers), lit, exact_poses(), {});
+    const FitResult of_both = fit(fit_rig(numbers), both, exact_poses(), {});
+    for (std::size_t k = 0; k < of_lit.numbers.size(); ++k) {
+        const FittedNumber& one = of_lit.numbers[k];
+        EXPECT_NEAR(of_both.numbers[k].value, one.value, kRounding * one.error) << one.key;
+        EXPECT_NEAR(of_both.numbers[k].error, one.error, kRounding * one.error) << one.key;
+    }
+}
+
+// Its aim is what no image shows: it stays where the rig has it, with the error that it has
+// beforehand, whatever halves of the survey say of the others.
+TEST(Fit, KnowsNothingOfALampThatIsOff) {
+    std::vector<double> altitudes_m;
+    for (int i = 0; i < 20; ++i) altitudes_m.push_back(1.4 + 0.05 * i);
+    RigText rig = fit_rig({.width_px = 16, .height_px = 12});
+    rig.set("strobe.aft.power", 0.0);
+    const FitSamples samples = fit_samples_of(rig.rig(), flown(altitudes_m), 0.02, 9);
+    const FitResult result = fit(rig, samples, exact_poses(), {});
+    const FittedNumber& aim = number_of(result, "strobe.aft.aim_along_deg");
+    EXPECT_EQ(aim.value, 0.0);
+    EXPECT_GE(aim.error, aim.spread * (1.0 - 1e-9));
+    EXPECT_FALSE(aim.is_determined);
+    for (const FittedNumber& one : result.numbers) EXPECT_TRUE(std::isfinite(one.error)) << one.key;
+}
+
 TEST(Fit, RefusesFloorsThatItDoesNotKnow) {
     Rig rig = fit_rig({}).rig();
     rig.seafloor.phong = 0.5;
