@@ -61,22 +61,24 @@ struct Cells {
           q(channels),
           residual(view.residual),
           slopes(view.slopes) {}
+    Cells(Index wide, Index high, Index channels, Index columns)
+        : across(wide),
+          down(high),
+          q(channels),
+          residual(
+              VectorXd::Constant(wide * high * channels, std::numeric_limits<double>::quiet_NaN())),
+          slopes(BlockLight::Rows::Zero(wide * high * channels, columns)) {}
 
     // The same of two by two, whose three details `take` gets where all four have a mean. What does
     // not come in pairs is left out.
     template <typename Take>
     [[nodiscard]] Cells halved(const Take& take) const {
-        Cells half = *this;
-        half.across = across / 2;
-        half.down = down / 2;
-        const Index count = half.across * half.down;
-        half.residual.setConstant(count * q, std::numeric_limits<double>::quiet_NaN());
-        half.slopes.setZero(count * q, slopes.cols());
+        Cells half(across / 2, down / 2, q, slopes.cols());
         BlockLight::Rows detail(q, slopes.cols());
         // Right less left, lower less upper, and across.
         constexpr std::array<std::array<double, 4>, 3> kSigns{
             {{-1.0, 1.0, -1.0, 1.0}, {-1.0, -1.0, 1.0, 1.0}, {1.0, -1.0, -1.0, 1.0}}};
-        for (Index cell = 0; cell < count; ++cell) {
+        for (Index cell = 0; cell < half.across * half.down; ++cell) {
             const Index first = (cell / half.across * 2 * across + cell % half.across * 2) * q;
             const std::array<Index, 4> parts{
                 first, first + q, first + across * q, first + (across + 1) * q};

@@ -139,8 +139,6 @@ FitImage image_of_map(ExrReader& reader,
         .sled = {.altitude_m = number_of(reader, "aphotic:altitude_m", map),
                  .pitch_rad = number_of(reader, "aphotic:pitch_deg", map) / kDegreesPerRadian,
                  .roll_rad = number_of(reader, "aphotic:roll_deg", map) / kDegreesPerRadian}};
-    if (!reader.attribute("aphotic:images").empty())
-        image.images = std::max(1.0, number_of(reader, "aphotic:images", map));
     average(raw, std::numeric_limits<float>::infinity(), block_px, image);
     require_every_channel(image, map);
     const bool is_mono = camera.sensor.is_mono();

@@ -24,7 +24,6 @@ inline constexpr double kMostSaturated = 0.01;
 struct FitImage {
     std::string name;
     Sled sled;
-    double images = 1.0;           // that a map was averaged of
     std::vector<float> signal{};   // by place, then channel
     double saturated_share = 0.0;  // of its samples
 };

@@ -130,14 +130,10 @@ class FitSamplesOfAMap : public testing::Test {
 };
 
 TEST_F(FitSamplesOfAMap, APoseIsTheMapsOwn) {
-    write({{"aphotic:altitude_m", "1.9"},
-           {"aphotic:pitch_deg", "3"},
-           {"aphotic:roll_deg", "-2"},
-           {"aphotic:images", "7"}});
+    write({{"aphotic:altitude_m", "1.9"}, {"aphotic:pitch_deg", "3"}, {"aphotic:roll_deg", "-2"}});
     const FitSamples found = samples_of_maps({map()}, camera_, 40);
     EXPECT_EQ(found.images[0].sled.altitude_m, 1.9);
     EXPECT_DOUBLE_EQ(found.images[0].sled.pitch_rad, 3.0 * kRadiansPerDegree);
-    EXPECT_EQ(found.images[0].images, 7.0);
     EXPECT_EQ(found.images[0].signal[0], 2.0F);
 }
 
