@@ -112,11 +112,14 @@ std::vector<Confounded> confounded_in(const FitProblem& problem, const MatrixXd&
         for (std::size_t j = 0; j < i; ++j) {
             const auto a = static_cast<Index>(i);
             const auto b = static_cast<Index>(j);
-            const bool is_curve = problem.numbers[i].at.part == FitPart::Beam ||
-                                  problem.numbers[j].at.part == FitPart::Beam;
+            const FitPart one = problem.numbers[i].at.part;
+            const FitPart other = problem.numbers[j].at.part;
+            const bool is_curve = one == FitPart::Beam || other == FitPart::Beam;
+            // What one lamp of two has less, the other has more.
+            const bool are_powers = one == FitPart::Power && other == FitPart::Power;
             const double correlation =
                 covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
-            if (!is_curve && std::abs(correlation) > kMuch)
+            if (!is_curve && !are_powers && std::abs(correlation) > kMuch)
                 found.push_back({problem.numbers[j].key, problem.numbers[i].key, correlation});
         }
     }
