@@ -96,6 +96,14 @@ double share_between(const PhaseFunction& phase, double from_rad, double to_rad)
 
 }  // namespace
 
+double light_left(double depth) {
+    return depth < kBlackDepth ? std::exp(-depth) : 0.0;
+}
+
+Eigen::ArrayXd light_left(const Eigen::ArrayXd& depth) {
+    return (depth < kBlackDepth).select((-depth).exp(), 0.0);
+}
+
 TracedPhase::TracedPhase(const PhaseFunction& phase) : phase_(phase) {
     if (const auto* table = std::get_if<PhaseTable>(&phase.kind)) {
         kinks_rad_ = table->angle_rad;

@@ -9,9 +9,14 @@
 // by quadrature of p_i from the back, so that no forward peak is summed; a formula carries its own
 // scale, a table is scaled by its own integral. Fournier and Forand's formula is 0/0 at d = 1: it
 // is taken in long double, and within kForandNear of there from six places around, to 1e-11.
+//
+// Light of which the water leaves less than e^-kBlackDepth is black: doubles end soon after, and
+// Eigen's vectorised exponential goes no lower than e^-709.8, whatever it is asked for.
 #pragma once
 
 #include "spectral/water.h"
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <vector>
@@ -19,6 +24,11 @@
 namespace aphotic {
 
 inline constexpr double kForandNear = 1e-4;
+inline constexpr double kBlackDepth = 700.0;
+
+// What is left of light after so many optical depths.
+[[nodiscard]] double light_left(double depth);
+[[nodiscard]] Eigen::ArrayXd light_left(const Eigen::ArrayXd& depth);
 
 class TracedPhase {
   public:

@@ -26,19 +26,9 @@ WideVector vertical(const Sled& sled) {
     return (pitch * roll).inverse() * WideVector::UnitZ();
 }
 
-// What is left of light after so many optical depths. Eigen's vectorised exponential goes no lower
-// than e^-709.8, whatever it is asked for.
-ArrayXd light_left(const ArrayXd& depth) {
-    return (depth < kBlackDepth).select((-depth).exp(), 0.0);
-}
-
 double sight_error_rad(const Camera& camera) {
     if (camera.lens) return kEdgeThroughLensRad;
     return camera.port ? kEdgeBehindPortRad : kEdgeRad;
-}
-
-double light_left(double depth) {
-    return depth < kBlackDepth ? std::exp(-depth) : 0.0;
 }
 
 // The second derivative of a lamp's light by its place in the emitter's plane, as a share of the
@@ -94,7 +84,6 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
                              .phong_size = object.phong_size});
         shapes_.emplace_back(object.shape);
     }
-    if (water_.scatters()) veil_.emplace(rig_, water_);
     tabulate_spectra();
     place_lamps();
 }
@@ -311,7 +300,7 @@ VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) co
     constexpr double kRoom = 1.05;
     constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
     VeilLights veil;
-    if (!veil_) return veil;
+    if (!water_.scatters()) return veil;
     for (const Strobe& strobe : rig_.strobes) {
         for (std::size_t i = 0; i < water_.phases().size(); ++i)
             veil.sources.push_back({strobe.spectrum, rig_.water.scatterers[i].scattering_per_m});
@@ -362,17 +351,7 @@ void Tracer::tabulate_spectra() {
         }
         indices_.push_back(index_at(lambda_nm));
     }
-    if (!veil_) return;
-    veil_light_.assign(rig_.strobes.size(),
-                       std::vector<ArrayXd>(water_.phases().size(), ArrayXd(count)));
-    for (Eigen::Index j = 0; j < count; ++j) {
-        const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
-        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-            const double flux = rig_.strobes[s].spectrum.at(lambda_nm) * rig_.strobes[s].power;
-            for (std::size_t i = 0; i < water_.phases().size(); ++i)
-                veil_light_[s][i](j) = flux * water_.scattering_per_m(i, lambda_nm);
-        }
-    }
+    if (water_.scatters()) veil_.emplace(rig_, water_, lambda_nm_);
 }
 
 double Tracer::height_m(const Vector3d& point_m) const {
@@ -502,46 +481,12 @@ WavelengthRange Tracer::traced_range() const {
     return {.first_nm = *first, .last_nm = *last};
 }
 
-// Without a port all wavelengths share a ray.
-void Tracer::add_veil(const View& view, ArrayXd& radiance) const {
-    if (radiance.size() == 0) return;
-    const Losses losses{.least_per_m = attenuation_per_m_.minCoeff(),
-                        .most_per_m = attenuation_per_m_.maxCoeff()};
-    VeilPoints points;
-    ArrayXd left(radiance.size());
-    std::vector<ArrayXd> light(water_.phases().size());
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        veil_->trace(s, view.ray, losses, points);
-        std::ranges::fill(light, ArrayXd::Zero(radiance.size()));
-        for (std::size_t n = 0; n < points.path_m.size(); ++n) {
-            left = light_left(points.path_m[n] * attenuation_per_m_);
-            for (std::size_t i = 0; i < light.size(); ++i) light[i] += points.light[i][n] * left;
-        }
-        for (std::size_t i = 0; i < light.size(); ++i) radiance += veil_light_[s][i] * light[i];
-    }
-}
-
-double Tracer::veil_of(const View& view, Eigen::Index wavelength) const {
-    const double loss_per_m = attenuation_per_m_(wavelength);
-    double sum = 0.0;
-    VeilPoints points;
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        veil_->trace(s, view.ray, {loss_per_m, loss_per_m}, points);
-        for (std::size_t n = 0; n < points.path_m.size(); ++n) {
-            const double left = light_left(loss_per_m * points.path_m[n]);
-            for (std::size_t i = 0; i < points.light.size(); ++i)
-                sum += veil_light_[s][i](wavelength) * points.light[i][n] * left;
-        }
-    }
-    return sum;
-}
-
 // What its sight shows, at every wavelength.
 void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd& radiance) const {
     View view;
     if (!rig_.camera.port) {
         const bool sees = look_along(in_air, {.glass = 1.0, .water = 1.0}, view);
-        if (veil_) add_veil(view, radiance);
+        if (veil_) radiance += veil_->along(view.ray);
         if (!sees) return;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
@@ -560,10 +505,14 @@ void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd&
     if (lambda_nm_.empty()) return;
     // Told once, for every wavelength has its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
+    if (veil_) {
+        radiance += veil_->along([&](std::size_t j) {
+            static_cast<void>(look_along(in_air, indices_[j], view));  // to the sky as well
+            return view.ray;
+        });
+    }
     for (Eigen::Index j = 0; j < radiance.size(); ++j) {
-        const bool sees = look_along(in_air, indices_[static_cast<std::size_t>(j)], view);
-        if (veil_) radiance(j) += veil_of(view, j);
-        if (!sees) continue;
+        if (!look_along(in_air, indices_[static_cast<std::size_t>(j)], view)) continue;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +

@@ -19,8 +19,7 @@
 // N      lamps of the emitter
 //
 // Double precision, but for heights over the floor and the angle to the horizon, which are small
-// differences at the extremes: these are taken in long double. Light of which the water leaves less
-// than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
+// differences at the extremes: these are taken in long double. The spectral grid is exact to
 // kSpectralError of a channel's signal (full_spectrum.h). An emitter of a size is as many
 // equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
 // wavelength and in every signal (of a beam with another falloff than cos^n, by an estimate:
@@ -36,8 +35,8 @@
 #include "validation/traced_beam.h"
 #include "validation/traced_lens.h"
 #include "validation/traced_port.h"
-#include "validation/traced_veil.h"
 #include "validation/traced_water.h"
+#include "validation/veil_spectrum.h"
 
 #include <Eigen/Core>
 
@@ -52,8 +51,6 @@ namespace aphotic {
 
 inline constexpr double kSpectralError = 1e-8;
 inline constexpr double kEmitterError = 2e-5;
-
-inline constexpr double kBlackDepth = 700.0;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
@@ -202,8 +199,6 @@ class Tracer {
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
     void trace_sight(int column, int row, const WideVector& in_air, Eigen::ArrayXd& radiance) const;
-    void add_veil(const View& view, Eigen::ArrayXd& radiance) const;
-    [[nodiscard]] double veil_of(const View& view, Eigen::Index wavelength) const;
     void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
     // Of every plane, `stride` apart.
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
@@ -263,12 +258,11 @@ class Tracer {
     std::size_t signal_nodes_ = 0;
     std::vector<double> lambda_nm_;
     Eigen::ArrayXd attenuation_per_m_;
-    std::vector<std::vector<Eigen::ArrayXd>> veil_light_;  // by strobe, scatterer: Phi power b
-    std::vector<std::vector<Eigen::ArrayXd>> diffuse_;     // by strobe, surface: Phi power rho / pi
-    std::vector<Eigen::ArrayXd> specular_;                 // by strobe: Phi power / pi
-    Eigen::ArrayXXd weights_;                              // of the grid, by channel
-    std::vector<Index> indices_;                           // behind a port
-    std::optional<TracedVeil> veil_;                       // of water that scatters
+    std::vector<std::vector<Eigen::ArrayXd>> diffuse_;  // by strobe, surface: Phi power rho / pi
+    std::vector<Eigen::ArrayXd> specular_;              // by strobe: Phi power / pi
+    Eigen::ArrayXXd weights_;                           // of the grid, by channel
+    std::vector<Index> indices_;                        // behind a port
+    std::optional<VeilSpectrum> veil_;                  // of water that scatters
 };
 
 }  // namespace aphotic
