@@ -4,6 +4,9 @@
 
 #include "base/disk_space.h"
 #include "base/error.h"
+#include "base/free_memory.h"
+#include "base/words.h"
+#include "cli/terminal.h"
 #include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
 
@@ -18,6 +21,14 @@ namespace {
 
 const fs::path kPovrayTemporary = "/tmp";  // POV-Ray 3.7 asks for no other
 
+std::uint64_t parsed_bytes(const SceneSet& scenes) {
+    std::uint64_t bytes = scenes.camera ? bytes_of_rays(*scenes.camera) : 0;
+    for (const IncludeFile& file : include_library()) bytes += file.text.size();
+    std::size_t longest = 0;
+    for (const FrameScene& scene : scenes.scenes) longest = std::max(longest, scene.sdl.size());
+    return bytes + longest;
+}
+
 std::uint64_t scenes_bytes(const SceneSet& scenes) {
     constexpr std::uint64_t kDiskBlock_bytes = 4096;   // what the least of files takes
     constexpr std::uint64_t kWavelength_bytes = 1024;  // of the manifest, twice as long as seen
@@ -27,6 +38,17 @@ std::uint64_t scenes_bytes(const SceneSet& scenes) {
     for (const IncludeFile& file : include_library()) bytes += file.text.size() + kDiskBlock_bytes;
     if (scenes.camera) bytes += bytes_of_rays(*scenes.camera) + kDiskBlock_bytes;
     return bytes;
+}
+
+// What the folder's own scenes include is there, in full; scenes are of one length.
+std::uint64_t parsed_bytes(const fs::path& folder) {
+    std::uint64_t includes = 0;
+    std::uint64_t longest = 0;
+    for (const auto& file : fs::directory_iterator(folder / "povray")) {
+        if (file.path().extension() == ".inc") includes += file.file_size();
+        if (file.path().extension() == ".pov") longest = std::max(longest, file.file_size());
+    }
+    return includes + longest;
 }
 
 // A manifest that cannot be read is the render's to complain of.
@@ -59,7 +81,7 @@ void add_needs_option(CLI::App& app, bool& ignore_needs) {
     add_flag(app, "--ignore-needs", ignore_needs);
 }
 
-void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_needs) {
+void require_room(const ResourceNeeds& needs, const fs::path& folder, bool ignore_needs) {
     if (ignore_needs) return;
     const FreeDisk free{.folder_bytes = free_disk_bytes(folder),
                         .temporary_bytes = free_disk_bytes(kPovrayTemporary),
@@ -71,22 +93,39 @@ void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_ne
         lacking);
 }
 
-DiskNeeds needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {
+ResourceNeeds needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {
     return render_needs({.size = image_size(scenes.manifest),
                          .frames = frames_to_render(scenes, folder),
                          .scenes_bytes = scenes_bytes(scenes),
+                         .parsed_bytes = parsed_bytes(scenes),
                          .jobs = jobs});
 }
 
-void require_place_and_room(const SceneSet& scenes,
-                            const fs::path& folder,
-                            int jobs,
-                            bool ignore_needs) {
-    require_place_for_scenes(folder, scenes);
-    require_room(needs_of(scenes, folder, jobs), folder, ignore_needs);
+int jobs_that_fit(const ResourceNeeds& needs, int jobs) {
+    const std::uint64_t free_bytes = free_memory_bytes();
+    const int fitting = jobs_with_memory(needs, free_bytes, jobs);
+    if (static_cast<std::uint64_t>(jobs) * needs.job_memory_bytes > free_bytes) {
+        warn("renders {} at a time, for POV-Ray takes up to {} of memory for each, and {} are free",
+             counted(static_cast<std::size_t>(fitting), "frame"),
+             bytes_in_words(needs.job_memory_bytes),
+             bytes_in_words(free_bytes));
+    }
+    return fitting;
 }
 
-DiskNeeds needs_of_share(const Manifest& whole, const fs::path& own, WorkShare share, int jobs) {
+int require_place_and_room(const SceneSet& scenes,
+                           const fs::path& folder,
+                           int jobs,
+                           bool ignore_needs) {
+    require_place_for_scenes(folder, scenes);
+    const ResourceNeeds needs = needs_of(scenes, folder, jobs);
+    require_room(needs, folder, ignore_needs);
+    return jobs_that_fit(needs, jobs);
+}
+
+ResourceNeeds needs_of_share(const fs::path& folder, WorkShare share, int jobs) {
+    const Manifest whole = read_manifest(folder);
+    const fs::path own = share_folder(folder, share);
     const std::vector<ManifestFrame> frames = share_of(whole.frames, share);
     const auto missing = std::ranges::count_if(frames, [&](const ManifestFrame& frame) {
         return !frame.done() && !fs::exists(image_path(own, frame));
@@ -94,10 +133,11 @@ DiskNeeds needs_of_share(const Manifest& whole, const fs::path& own, WorkShare s
     return render_needs({.size = image_size(whole),
                          .frames = static_cast<std::size_t>(missing),
                          .scenes_bytes = 0,
+                         .parsed_bytes = parsed_bytes(folder),
                          .jobs = jobs});
 }
 
-DiskNeeds needs_of_scenes(const SceneSet& scenes) {
+ResourceNeeds needs_of_scenes(const SceneSet& scenes) {
     return {.folder_bytes = scenes_bytes(scenes)};
 }
 

@@ -71,7 +71,7 @@ Json wavelengths_of(const Manifest& manifest) {
 
 // What a render into an empty folder would take, as many frames at a time as there are cores.
 struct PlannedNeeds {
-    DiskNeeds render;
+    ResourceNeeds render;
     FileSizes files;
     int jobs = 1;
 };
@@ -87,6 +87,8 @@ Json json_of(const PlannedNeeds& needs) {
     return {{"jobs", needs.jobs},
             {"folder_bytes", needs.render.folder_bytes},
             {"temporary_bytes", needs.render.temporary_bytes},
+            {"memory_bytes", needs.render.memory_bytes},
+            {"job_memory_bytes", needs.render.job_memory_bytes},
             {"files",
              {{"frame", needs.files.frame_bytes},
               {"image.exr", needs.files.image_bytes},
@@ -94,7 +96,7 @@ Json json_of(const PlannedNeeds& needs) {
               {"preview.png", needs.files.preview_bytes}}}};
 }
 
-void print_needs(const PlannedNeeds& needs, std::size_t frames) {
+void print_needs(const PlannedNeeds& needs, std::size_t frames, bool has_scene) {
     const auto words = [](std::uint64_t bytes) { return bytes_in_words(bytes); };
     say("\nIt will take at most, with {}:\n"
         "  {} of disk: {} of {} each, spectral.exr {}, image.exr {}, preview.png {}\n",
@@ -108,6 +110,10 @@ void print_needs(const PlannedNeeds& needs, std::size_t frames) {
     if (needs.render.temporary_bytes > 0) {
         say("  {} of disk in /tmp, while POV-Ray renders\n", words(needs.render.temporary_bytes));
     }
+    say("  {} of memory, each POV-Ray {}{}\n",
+        words(needs.render.memory_bytes),
+        words(needs.render.job_memory_bytes),
+        has_scene ? " besides what the scene's own files take" : "");
 }
 
 struct Planned {
@@ -233,7 +239,7 @@ void print(const Planned& made) {
     if (const std::string veil = povray_veil_in_words(manifest); !veil.empty()) say("{}\n", veil);
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
-    print_needs(planned_needs(scenes), manifest.frames.size());
+    print_needs(planned_needs(scenes), manifest.frames.size(), manifest.scene.has_value());
     if (plan.omissions.empty()) return;
     say("\nLeft out:\n");
     for (const Omission& omission : plan.omissions) {

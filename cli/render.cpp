@@ -104,13 +104,12 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
             folder.string());
     const PovRay povray = find_povray(options.planning.povray);
     const fs::path own = share_folder(folder, options.share);
-    require_room(needs_of_share(read_manifest(folder), own, options.share, options.jobs),
-                 own,
-                 options.planning.ignore_needs);
+    const ResourceNeeds needs = needs_of_share(folder, options.share, options.jobs);
+    require_room(needs, own, options.planning.ignore_needs);
     std::optional<FolderLock> whole;
     if (!options.share.is_whole()) whole.emplace(folder, FolderUse::Read);
     const FolderLock lock = claim_folder(own);
-    RunOptions run = run_options(options.planning, options.jobs);
+    RunOptions run = run_options(options.planning, jobs_that_fit(needs, options.jobs));
     ProgressLine line;
     run.report = shown_on(line);
     const auto start = std::chrono::steady_clock::now();
@@ -139,16 +138,17 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = povray_for(planned, options.planning, options.folder);
-    require_place_and_room(scenes, options.folder, options.jobs, options.planning.ignore_needs);
+    const int jobs =
+        require_place_and_room(scenes, options.folder, options.jobs, options.planning.ignore_needs);
 
     const FolderLock lock = claim_folder(options.folder);
     const RenderedFrames frames =
-        render_frames(povray, options.folder, scenes, run_options(options.planning, options.jobs));
+        render_frames(povray, options.folder, scenes, run_options(options.planning, jobs));
     const RenderResult& result = frames.result;
     Rendered rendered{.integration = integrate_folder(
                           options.folder, result.manifest, options.preview, options.folder),
                       .povray_version = povray.version,
-                      .jobs = scenes.scene_writes_files ? 1 : options.jobs,
+                      .jobs = scenes.scene_writes_files ? 1 : jobs,
                       .frames_rendered = result.rendered,
                       .frames_kept = result.kept,
                       .povray_s = frames.povray_s};

@@ -115,7 +115,9 @@ void print_study(const Study& study, const fs::path& folder) {
 }
 
 // Of the setting that has most.
-DiskNeeds needs_of_renders(const Rig& rig, const std::vector<PlannedSetting>& settings, int cores) {
+ResourceNeeds needs_of_renders(const Rig& rig,
+                               const std::vector<PlannedSetting>& settings,
+                               int cores) {
     ImageSize size{.width_px = rig.camera.width_px, .height_px = rig.camera.height_px};
     std::size_t frames = 0;
     for (const PlannedSetting& one : settings) {

@@ -42,9 +42,10 @@ struct Rendering {
 
 Rendering render_here(const ValidateCommandOptions& options,
                       const PovRay& povray,
-                      const SceneSet& scenes) {
+                      const SceneSet& scenes,
+                      int jobs) {
     const RenderedFrames frames =
-        render_frames(povray, options.folder, scenes, run_options(options.planning, options.jobs));
+        render_frames(povray, options.folder, scenes, run_options(options.planning, jobs));
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     rendering.integrate_s =
         integrate_folder(options.folder, rendering.manifest, {}, options.folder).seconds;
@@ -176,14 +177,15 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
                     planned.plan.no_promise);
     // All that can be refused is refused before there is a folder.
     PovRay povray;
+    int jobs = options.jobs;
     if (is_rendered) {
         (void)rendered_manifest(options.rendered_folder, planned.rig);
     } else {
         povray = povray_for(planned, options.planning, options.folder);
-        require_place_and_room(scenes_of(planned, options.planning),
-                               options.folder,
-                               options.jobs,
-                               options.planning.ignore_needs);
+        jobs = require_place_and_room(scenes_of(planned, options.planning),
+                                      options.folder,
+                                      options.jobs,
+                                      options.planning.ignore_needs);
     }
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
@@ -196,7 +198,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
                  options.planning.rig_file);
         }
     } else {
-        rendering = render_here(options, povray, scenes_of(planned, options.planning));
+        rendering = render_here(options, povray, scenes_of(planned, options.planning), jobs);
     }
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 

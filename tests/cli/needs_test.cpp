@@ -2,7 +2,7 @@
 //
 // What the commands take of disk, against what is foretold, and that they refuse before they begin
 // where there is too little; what they take of memory, as the kernel counts it.
-#include "scene_gen/disk_estimate.h"
+#include "scene_gen/resource_needs.h"
 
 #include "image/exr.h"
 #include "rig/file/rig_reader.h"
@@ -64,6 +64,7 @@ class Needs : public CommandTest {
     }
 };
 using MemoryOfIntegrate = Needs;
+using MemoryOfRender = Needs;
 using MemoryOfTrace = Needs;
 using NeedsOfMapsByAltitude = Needs;
 using Memory = Needs;
@@ -222,7 +223,7 @@ TEST_F(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
 
 TEST_F(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     put_rig(64, 48);
-    const DiskNeeds needs = images_needs({.width_px = 64, .height_px = 48, .wavelengths = 3});
+    const ResourceNeeds needs = images_needs({.width_px = 64, .height_px = 48, .wavelengths = 3});
     // In whole pages: of tmpfs, every file and folder takes one more than it fills.
     const std::uint64_t size_kib = needs.folder_bytes / 1024 + 64;
     const std::string command = "trace rig.toml --fitted 3 -o disk/out";
@@ -233,6 +234,22 @@ TEST_F(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const std::string half = fmt::format("{}k", size_kib / 2);
     EXPECT_EQ(on_small_disk(half, command)->status, kRunFailed);
     done(*on_small_disk(half, command + " --ignore-needs"));
+}
+
+// A POV-Ray takes no more than is said, and half of that is near. It is the largest of what the
+// command starts, and larger than the command itself.
+TEST_F(MemoryOfRender, IsAsPlanned) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    constexpr int kWidth_px = 2000;
+    constexpr int kHeight_px = 1500;
+    put_rig(kWidth_px, kHeight_px);
+    const auto plan = nlohmann::json::parse(done("plan rig.toml --bands 1 --json").out);
+    const std::uint64_t said_bytes = plan.at("needs").at("job_memory_bytes");
+    done("generate rig.toml -o out --bands 1");
+    const Measured found = measured(home_, Arguments("render out --frames 1/1 --jobs 1 --json"));
+    EXPECT_EQ(found.status, 0);
+    EXPECT_LE(found.peak_bytes, said_bytes);
+    EXPECT_GE(found.peak_bytes, said_bytes / 2);
 }
 
 // The limit of a shell or a scheduler.

@@ -2,7 +2,7 @@
 //
 // Frames of random rigs by POV-Ray: each pixel is the reference's, within the rounding of half
 // floats; so what tests/validation/tracer_properties_test.cpp says of every image holds of them.
-#include "scene_gen/disk_estimate.h"
+#include "scene_gen/resource_needs.h"
 #include "support/random_rig.h"
 #include "support/rendered.h"
 #include "validation/tracer.h"

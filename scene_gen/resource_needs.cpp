@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene_gen/disk_estimate.h"
+#include "scene_gen/resource_needs.h"
 
 #include "image/row_blocks.h"
 #include "spectral/sensor.h"
@@ -22,6 +22,12 @@ constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray says every 0.1 s 
 constexpr std::uint64_t kPovrayPixel_bytes = 20;    // five floats
 constexpr std::uint64_t kPovrayState_bytes = 21;  // these, and a header for each square of 32 x 32
 constexpr std::uint64_t kPovrayBuffer_bytes = 129ULL << 20U;  // from there on an image goes to /tmp
+
+constexpr std::uint64_t kPovray_bytes = 24'000'000;
+constexpr std::uint64_t kParsed = 6;             // times its text
+constexpr std::uint64_t kPovrayFrame_bytes = 8;  // a pixel, as it writes the frame
+constexpr std::uint64_t kIntegratedPixel_bytes = 25;
+constexpr std::uint64_t kIntegrate_bytes = 192'000'000;  // two blocks of rows (image/row_blocks.h)
 
 std::uint64_t pixels_of(const ImageSize& size) {
     return static_cast<std::uint64_t>(size.width_px) * static_cast<std::uint64_t>(size.height_px);
@@ -59,31 +65,37 @@ FileSizes largest_files(const ImageSize& size) {
                              3 * pixels + 3 * pixels / 1000};
 }
 
-DiskNeeds render_needs(const RenderWork& work) {
+ResourceNeeds render_needs(const RenderWork& work) {
     const FileSizes files = largest_files(work.size);
     const auto processes = std::min(work.frames, static_cast<std::size_t>(work.jobs));
     const std::uint64_t pixels = pixels_of(work.size);
     const std::uint64_t povray_bytes = kHeader_bytes + kPovrayState_bytes * pixels;
     const std::uint64_t picture_bytes = kPovrayPixel_bytes * pixels;
     const bool goes_to_disk = picture_bytes >= kPovrayBuffer_bytes;
+    const std::uint64_t job_memory_bytes = kPovray_bytes + kParsed * work.parsed_bytes +
+                                           (goes_to_disk ? 0 : picture_bytes) +
+                                           kPovrayFrame_bytes * pixels;
     return {.folder_bytes = work.scenes_bytes + work.frames * files.frame_bytes +
                             std::max(processes * povray_bytes, images_bytes(files)),
-            .temporary_bytes = goes_to_disk ? processes * (kHeader_bytes + picture_bytes) : 0};
+            .temporary_bytes = goes_to_disk ? processes * (kHeader_bytes + picture_bytes) : 0,
+            .job_memory_bytes = job_memory_bytes,
+            .memory_bytes = std::max(processes * job_memory_bytes,
+                                     kIntegrate_bytes + kIntegratedPixel_bytes * pixels)};
 }
 
-DiskNeeds images_needs(const ImageSize& size) {
+ResourceNeeds images_needs(const ImageSize& size) {
     return {.folder_bytes = images_bytes(largest_files(size))};
 }
 
 // One setting at a time, whose folder is taken away before the next; the reference stays.
-DiskNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs) {
-    DiskNeeds needs =
+ResourceNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs) {
+    ResourceNeeds needs =
         render_needs({.size = size, .frames = frames, .scenes_bytes = 0, .jobs = jobs});
     needs.folder_bytes += largest_files(size).image_bytes;
     return needs;
 }
 
-DiskNeeds lightmap_needs(const LightmapWork& work) {
+ResourceNeeds lightmap_needs(const LightmapWork& work) {
     const FileSizes files = largest_files({.width_px = work.width_px,
                                            .height_px = work.height_px,
                                            .wavelengths = kChannels * work.parts});
@@ -91,7 +103,7 @@ DiskNeeds lightmap_needs(const LightmapWork& work) {
                 work.maps * (files.spectral_bytes + (work.has_preview ? files.preview_bytes : 0))};
 }
 
-DiskNeeds oplab_needs(int width_px, int height_px) {
+ResourceNeeds oplab_needs(int width_px, int height_px) {
     constexpr std::uint64_t kArrays = 6;  // a, b, c, gain, mean, deviation
     constexpr std::uint64_t kHeaders_bytes = 4096;
     return {.folder_bytes =
@@ -99,7 +111,13 @@ DiskNeeds oplab_needs(int width_px, int height_px) {
                                      pixels_of({.width_px = width_px, .height_px = height_px})};
 }
 
-std::string shortage(const DiskNeeds& needs, const FreeDisk& free, const std::string& folder) {
+int jobs_with_memory(const ResourceNeeds& needs, std::uint64_t free_bytes, int jobs) {
+    if (needs.job_memory_bytes == 0) return jobs;
+    const std::uint64_t room = free_bytes / needs.job_memory_bytes;
+    return static_cast<int>(std::clamp<std::uint64_t>(room, 1, static_cast<std::uint64_t>(jobs)));
+}
+
+std::string shortage(const ResourceNeeds& needs, const FreeDisk& free, const std::string& folder) {
     const auto lack = [](std::uint64_t needed_bytes, std::uint64_t free_bytes, const auto& where) {
         if (needed_bytes <= free_bytes) return std::string();
         return fmt::format("needs up to {} in {}, {} are free",

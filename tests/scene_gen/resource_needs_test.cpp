@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The sizes of real files against those foretold, and the rule by which work is refused.
-#include "scene_gen/disk_estimate.h"
+#include "scene_gen/resource_needs.h"
 
 #include "image/output_images.h"
 #include "image/preview.h"
@@ -85,7 +85,7 @@ constexpr double kOverhead = 0.01;
 // One frame, 6 bytes a pixel; then 12 of image.exr, 24 of spectral.exr and 3 of the preview, which
 // is more than the 21 of POV-Ray's notes.
 TEST(RenderNeeds, OfTheLargestImageAreByHand) {
-    const DiskNeeds needs =
+    const ResourceNeeds needs =
         render_needs({.size = kLargest, .frames = 1, .scenes_bytes = 0, .jobs = 2});
     const double bytes = (6.0 + 12.0 + 24.0 + 3.0) * static_cast<double>(kPixelsOfLargest);
     EXPECT_NEAR(static_cast<double>(needs.folder_bytes), bytes, kOverhead * bytes);
@@ -95,18 +95,34 @@ TEST(RenderNeeds, OfTheLargestImageAreByHand) {
 
 TEST(RenderNeeds, GrowWithTheProcessesThatRun) {
     RenderWork work{.size = kLargest, .frames = 12, .scenes_bytes = 0, .jobs = 1};
-    const DiskNeeds one = render_needs(work);
+    const ResourceNeeds one = render_needs(work);
     work.jobs = 6;
-    const DiskNeeds six = render_needs(work);
+    const ResourceNeeds six = render_needs(work);
     EXPECT_EQ(six.temporary_bytes, 6 * one.temporary_bytes);
     EXPECT_GT(six.folder_bytes, one.folder_bytes);
     work.frames = 1;  // there is no work for the others
     EXPECT_EQ(render_needs(work).temporary_bytes, one.temporary_bytes);
 }
 
+// 20 bytes a pixel of the image, unless these go to /tmp, and 8 of the frame.
+TEST(RenderNeeds, OfMemoryGrowWithTheJobs) {
+    constexpr ImageSize kSmall{.width_px = 1000, .height_px = 1000, .wavelengths = 3};
+    RenderWork work{.size = kSmall, .frames = 8, .parsed_bytes = 1'000'000, .jobs = 4};
+    const ResourceNeeds needs = render_needs(work);
+    const double expected = 24e6 + 6e6 + (20.0 + 8.0) * 1e6;
+    EXPECT_NEAR(static_cast<double>(needs.job_memory_bytes), expected, kOverhead * expected);
+    EXPECT_EQ(needs.memory_bytes, 4 * needs.job_memory_bytes);
+    EXPECT_EQ(jobs_with_memory(needs, 3 * needs.job_memory_bytes + 1, 4), 3);
+    EXPECT_EQ(jobs_with_memory(needs, 1000 * needs.job_memory_bytes, 4), 4);
+    EXPECT_EQ(jobs_with_memory(needs, 1, 4), 1);
+    work.size = kLargest;
+    const double at_disk = 24e6 + 6e6 + 8.0 * kPixelsOfLargest;
+    EXPECT_NEAR(static_cast<double>(render_needs(work).job_memory_bytes), at_disk, 1.0);
+}
+
 TEST(RenderNeeds, OfKeptFramesAreTheImagesAlone) {
     const FileSizes files = largest_files(kSize);
-    const DiskNeeds needs =
+    const ResourceNeeds needs =
         render_needs({.size = kSize, .frames = 0, .scenes_bytes = 99, .jobs = 4});
     EXPECT_EQ(needs.folder_bytes,
               99 + files.image_bytes + files.spectral_bytes + files.preview_bytes);
@@ -114,8 +130,9 @@ TEST(RenderNeeds, OfKeptFramesAreTheImagesAlone) {
 }
 
 TEST(ImagesNeeds, AreThoseOfKeptFrames) {
-    const DiskNeeds kept = render_needs({.size = kSize, .frames = 0, .scenes_bytes = 0, .jobs = 4});
-    const DiskNeeds needs = images_needs(kSize);
+    const ResourceNeeds kept =
+        render_needs({.size = kSize, .frames = 0, .scenes_bytes = 0, .jobs = 4});
+    const ResourceNeeds needs = images_needs(kSize);
     EXPECT_EQ(needs.folder_bytes, kept.folder_bytes);
     EXPECT_EQ(needs.temporary_bytes, 0U);
 }
@@ -140,7 +157,7 @@ TEST(LightmapNeeds, OfTheLargestImageAreByHand) {
 // -------------------------------------------------------------------------------------
 
 constexpr std::uint64_t kGB = 1'000'000'000;
-const DiskNeeds kNeeds{.folder_bytes = 12 * kGB + 300'000'000, .temporary_bytes = 5 * kGB};
+const ResourceNeeds kNeeds{.folder_bytes = 12 * kGB + 300'000'000, .temporary_bytes = 5 * kGB};
 
 FreeDisk free_of(double folder_gb, double temporary_gb, bool is_one_disk) {
     const auto bytes = [](double amount_gb) { return static_cast<std::uint64_t>(1e9 * amount_gb); };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much disk a render, a trace, a study or lightmaps take at most, before any of it
-// is begun; and whether there is so much.
+// How much disk a render, a trace, a study or lightmaps take at most, and how much memory a render,
+// before any of it is begun; and whether there is so much.
 //
 // As if nothing could be compressed, P pixels, n wavelengths,
 //
@@ -14,6 +14,11 @@
 // same name that they replace, so these give no room. While POV-Ray renders, each of its processes
 // keeps beside the frame what it would need to go on, 21 P, and where its image exceeds 128 MiB
 // that image too in /tmp, 20 P.
+//
+// A POV-Ray takes 24 MB of memory, 6 times the text of its scene, its image unless that goes to
+// /tmp, and 8 P for the frame that it writes: a little more than measured with POV-Ray 3.7.0.10 (18
+// MB, 3.5 times, 27 P; 217 MB at 24 megapixels). What a user's scene includes is not known here.
+// Integrating takes 25 P and 192 MB.
 #pragma once
 
 #include "image/frame_format.h"
@@ -40,23 +45,26 @@ struct FileSizes {
 };
 [[nodiscard]] FileSizes largest_files(const ImageSize& size);
 
-struct DiskNeeds {
-    std::uint64_t folder_bytes = 0;     // at the fullest moment, beside what is there already
-    std::uint64_t temporary_bytes = 0;  // in /tmp
+struct ResourceNeeds {
+    std::uint64_t folder_bytes = 0;      // at the fullest moment, beside what is there already
+    std::uint64_t temporary_bytes = 0;   // in /tmp
+    std::uint64_t job_memory_bytes = 0;  // of each POV-Ray that runs
+    std::uint64_t memory_bytes = 0;      // of all of them, or of integrating
 };
 
 // What a render writes and runs.
 struct RenderWork {
     ImageSize size;
     std::size_t frames = 0;  // that are to be rendered; those that are kept take no more room
-    std::uint64_t scenes_bytes = 0;
+    std::uint64_t scenes_bytes = 0;  // on disk, all of them
+    std::uint64_t parsed_bytes = 0;  // by a POV-Ray: the longest scene and our includes
     int jobs = 1;
 };
-[[nodiscard]] DiskNeeds render_needs(const RenderWork& work);
+[[nodiscard]] ResourceNeeds render_needs(const RenderWork& work);
 // Of frames that are there, integrated; and of a trace.
-[[nodiscard]] DiskNeeds images_needs(const ImageSize& size);
+[[nodiscard]] ResourceNeeds images_needs(const ImageSize& size);
 // frames: of the setting that has most.
-[[nodiscard]] DiskNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs);
+[[nodiscard]] ResourceNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs);
 
 // Lightmaps in a file each (lightmap/lightmap_file.h), with those of parts of their light.
 struct LightmapWork {
@@ -66,10 +74,10 @@ struct LightmapWork {
     std::size_t parts = 0;
     bool has_preview = false;
 };
-[[nodiscard]] DiskNeeds lightmap_needs(const LightmapWork& work);
+[[nodiscard]] ResourceNeeds lightmap_needs(const LightmapWork& work);
 
 // Of lightmap/oplab_export.h, whatever its altitudes.
-[[nodiscard]] DiskNeeds oplab_needs(int width_px, int height_px);
+[[nodiscard]] ResourceNeeds oplab_needs(int width_px, int height_px);
 
 // Where the work is to be done.
 struct FreeDisk {
@@ -78,8 +86,11 @@ struct FreeDisk {
     bool is_one_disk = false;  // folder and /tmp share it
 };
 
+// How many of the jobs have room at a time, at least 1.
+[[nodiscard]] int jobs_with_memory(const ResourceNeeds& needs, std::uint64_t free_bytes, int jobs);
+
 // What is lacking, in words: "needs up to 12.3 GB in out, 4.1 GB are free". Empty when nothing is.
-[[nodiscard]] std::string shortage(const DiskNeeds& needs,
+[[nodiscard]] std::string shortage(const ResourceNeeds& needs,
                                    const FreeDisk& free,
                                    const std::string& folder);
 
