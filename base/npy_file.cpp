@@ -2,19 +2,122 @@
 #include "base/npy_file.h"
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <numeric>
+#include <regex>
 #include <string>
 
 namespace aphotic {
 
-static_assert(std::endian::native == std::endian::little);  // samples go out as they are
+static_assert(std::endian::native == std::endian::little);  // samples come and go as they are
+
+namespace {
+
+constexpr std::string_view kMagic{"\x93NUMPY", 6};
+
+template <typename Number>
+float number_at(const char* bytes) {
+    Number number{};
+    std::memcpy(&number, bytes, sizeof number);
+    return static_cast<float>(number);
+}
+
+// By descr, without the sign of its byte order.
+struct NumberType {
+    std::string_view descr;
+    std::size_t bytes;
+    float (*at)(const char* bytes);
+};
+constexpr std::array kNumberTypes{NumberType{"f4", 4, number_at<float>},
+                                  NumberType{"f8", 8, number_at<double>},
+                                  NumberType{"u1", 1, number_at<std::uint8_t>},
+                                  NumberType{"u2", 2, number_at<std::uint16_t>},
+                                  NumberType{"i2", 2, number_at<std::int16_t>},
+                                  NumberType{"u4", 4, number_at<std::uint32_t>},
+                                  NumberType{"i4", 4, number_at<std::int32_t>}};
+
+// The header's text and where the samples begin. Version 1 has two bytes of its length, others
+// four.
+std::pair<std::string, std::size_t> header_of(const std::string& file) {
+    constexpr std::size_t kVersion = 6;
+    constexpr std::size_t kLength = 8;
+    if (!file.starts_with(kMagic) || file.size() < kLength + 4) return {};
+    const std::size_t bytes = file[kVersion] == 1 ? 2 : 4;
+    std::size_t length = 0;
+    for (std::size_t k = 0; k < bytes; ++k)
+        length |= std::size_t{static_cast<unsigned char>(file[kLength + k])} << (8 * k);
+    const std::size_t start = kLength + bytes + length;
+    if (start > file.size()) return {};
+    return {file.substr(kLength + bytes, length), start};
+}
+
+// From the first index fastest to the last.
+std::vector<float> in_rows(const std::vector<float>& columns,
+                           const std::vector<std::size_t>& shape) {
+    std::vector<float> rows(columns.size());
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        std::size_t rest = n;
+        std::size_t place = 0;
+        std::size_t stride = columns.size();
+        for (const std::size_t side : shape) {
+            stride /= side;
+            place += rest % side * stride;
+            rest /= side;
+        }
+        rows[place] = columns[n];
+    }
+    return rows;
+}
+
+}  // namespace
+
+NpyArray read_npy(const std::filesystem::path& path) {
+    static const std::regex kDescr(R"('descr':\s*'[<|]([fui][1248])')");
+    static const std::regex kShape(R"('shape':\s*\(([0-9, ]*)\))");
+    const std::string file = read_text_file(path);
+    const auto [header, start] = header_of(file);
+    std::smatch descr;
+    std::smatch shape;
+    const bool is_known =
+        std::regex_search(header, descr, kDescr) && std::regex_search(header, shape, kShape);
+    const auto* const type = std::ranges::find_if(kNumberTypes, [&](const NumberType& one) {
+        return is_known && one.descr == descr[1].str();
+    });
+    if (type == kNumberTypes.end())
+        throw InputError(
+            "{}: found {}; allowed: an array of little-endian real numbers as NumPy saves it",
+            path.string(),
+            is_known ? "numbers of the type " + descr[1].str() : "no such array");
+    NpyArray array;
+    const std::string sides = shape[1];
+    static const std::regex kNumber("[0-9]+");
+    for (std::sregex_iterator side(sides.begin(), sides.end(), kNumber), end; side != end; ++side)
+        array.shape.push_back(std::stoul(side->str()));
+    const std::size_t count = std::accumulate(
+        array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>{});
+    if (count * type->bytes != file.size() - start)
+        throw InputError("{}: found {} bytes of samples; allowed: {} for the shape ({})",
+                         path.string(),
+                         file.size() - start,
+                         count * type->bytes,
+                         sides);
+    for (std::size_t n = 0; n < count; ++n)
+        array.samples.push_back(type->at(file.data() + start + n * type->bytes));
+    static const std::regex kFortran(R"('fortran_order':\s*True)");
+    if (std::regex_search(header, kFortran)) array.samples = in_rows(array.samples, array.shape);
+    return array;
+}
 
 void write_npy(const std::filesystem::path& path,
                const std::vector<std::size_t>& shape,
@@ -29,7 +132,8 @@ void write_npy(const std::filesystem::path& path,
                       kAlignment_bytes - kStart_bytes,
                   ' ');
     header.back() = '\n';
-    std::string file("\x93NUMPY\x01\x00", 8);
+    std::string file(kMagic);
+    file.append("\x01\x00", 2);
     file += static_cast<char>(header.size() % 256);
     file += static_cast<char>(header.size() / 256);
     file += header;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Arrays as numpy.load() reads them: the format .npy, version 1.0, of little-endian floats (<f4) in
-// C's order, the last index fastest.
+// Arrays as numpy.load() reads them: the format .npy, written as version 1.0, of little-endian
+// floats
+// (<f4) in C's order, the last index fastest.
 //
 //   \x93NUMPY 1 0, the length of the header in 2 bytes, the header: a dictionary of Python's with
 //   descr, fortran_order and shape, padded with blanks and ended with a newline so that the samples
@@ -21,5 +22,13 @@ namespace aphotic {
 void write_npy(const std::filesystem::path& path,
                const std::vector<std::size_t>& shape,
                std::span<const float> samples);
+
+// Of numbers that are no complex ones, little-endian, in either order; here in C's. An InputError,
+// which names the file, when it is none.
+struct NpyArray {
+    std::vector<std::size_t> shape{};
+    std::vector<float> samples{};
+};
+[[nodiscard]] NpyArray read_npy(const std::filesystem::path& path);
 
 }  // namespace aphotic

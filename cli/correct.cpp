@@ -118,7 +118,8 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
                                             Rig rig,
                                             const Survey& survey) {
     if (options.no_veil || !rig.water.scatters()) return std::nullopt;
-    rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
+    if (survey.navigation)
+        rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
     return model_error(rig, options.input.rig, options.model_tolerance);
 }
 
@@ -160,10 +161,12 @@ Task rig_task(const CorrectCommandOptions& options) {
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
     require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
-    survey.navigation = read_navigation(options.input, survey.files, &rig);
+    survey.navigation = navigation_of(options.input, survey.files, rig);
+    const bool has_relief = !options.input.depth.place.empty();
+    if (has_relief) survey.depth = options.input.depth;
     survey.light = naming(file, [&] {
         return light_of_rig(
-            rig, *survey.navigation, survey.files, !options.no_veil, options.tolerance);
+            rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     });
     survey.light.rig_size = own;
     expect_size_of(survey.light, survey.camera);
@@ -178,9 +181,8 @@ Task task_of(CorrectCommandOptions& options) {
     if (has_rig != options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
     }
-    if (has_rig == navigation.source.empty()) {
-        throw InputError("--rig and --nav go together: the map depends on where the sled was");
-    }
+    if (!has_rig && (!navigation.source.empty() || !options.input.depth.place.empty()))
+        throw InputError("--map is one for all images: --nav and --depth-map need --rig");
     if (const std::vector<double>& range = options.altitudes_m; !range.empty()) {
         if (range[0] > range[1]) {
             throw InputError(
@@ -261,6 +263,7 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kMostTolerance = 0.1;
     add_option(app, "--rig", options.input.rig);
     add_navigation_options(app, options.input);
+    add_depth_options(app, options.input);
     add_option(app, "--map", options.map);
     add_option(app, "--tolerance", options.tolerance)->check(in_range(0.0, kMostTolerance));
     add_flag(app, "--no-veil", options.no_veil);

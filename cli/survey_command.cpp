@@ -154,6 +154,25 @@ CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input) {
     return nav;
 }
 
+void add_depth_options(CLI::App& app, SurveyInput& input) {
+    const OptionGroup group(app, "Relief");
+    constexpr double kMillimetre = 1e-3;
+    DepthMaps& depth = input.depth;
+    CLI::Option* maps = add_option(app, "--depth-map", depth.place)->check(CLI::ExistingPath);
+    const auto take = [&depth](const std::string& unit) {
+        depth.unit_m = unit == "mm" ? kMillimetre : 1.0;
+    };
+    CLI::Option* unit = add_option_function<std::string>(app, "--depth-unit", take)
+                            ->check(CLI::IsMember({"m", "mm"}));
+    CLI::Option* is = add_option(app, "--depth-is", depth.is)
+                          ->transform(word_of<DepthIs>(
+                              {{"axis", DepthIs::AlongAxis}, {"ray", DepthIs::AlongRay}}));
+    CLI::Option* normals = add_option(app, "--normals", depth.normals)
+                               ->transform(word_of<NormalsFrom>(
+                                   {{"depth", NormalsFrom::Depth}, {"floor", NormalsFrom::Floor}}));
+    for (CLI::Option* option : {unit, is, normals}) option->needs(maps);
+}
+
 void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white) {
     CameraNumbers& camera = input.camera;
     add_read(app, "--bayer", camera.mosaic, read_by(mosaic_named, "RGGB, BGGR, GRBG, GBRG, mono"));
@@ -230,6 +249,19 @@ Survey read_survey(const SurveyInput& input, const std::filesystem::path& output
     // A crop that no image has is one mistake.
     survey.camera = expecting_usual_size(survey.camera, survey.files);
     return survey;
+}
+
+std::optional<Navigation> navigation_of(const SurveyInput& input,
+                                        const std::vector<ImageFile>& files,
+                                        const Rig& rig) {
+    const bool has_depth = !input.depth.place.empty();
+    if (!input.navigation.source.empty()) return read_navigation(input, files, &rig);
+    if (!has_depth)
+        throw InputError(
+            "--rig needs --nav, for the map depends on where the sled was, or --depth-map");
+    if (input.depth.normals == NormalsFrom::Floor)
+        throw InputError("--normals floor needs --nav, which says how the floor lies");
+    return std::nullopt;
 }
 
 Navigation read_navigation(const SurveyInput& input,

@@ -36,6 +36,7 @@ struct SurveyInput {
     std::vector<std::string> images;
     std::string rig;  // empty: none
     NavigationOptions navigation;
+    DepthMaps depth{};  // without a place: none
     CameraNumbers camera;
     bool strict = false;
     AllowedSkips allowed_skips;
@@ -47,6 +48,8 @@ void add_images(CLI::App& app, SurveyInput& input);
 void add_survey_rig(CLI::App& app, SurveyInput& input);
 // --nav and all that says how it is to be understood.
 CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
+// --depth-map and all that says how it is to be understood.
+void add_depth_options(CLI::App& app, SurveyInput& input);
 // --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
 void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white = true);
 // --strict, --allow-skipped, --json
@@ -65,6 +68,10 @@ using Settle = std::function<void()>;
 [[nodiscard]] Survey read_survey(const SurveyInput& input,
                                  const std::filesystem::path& output,
                                  const Rig* rig);
+// None where depth maps do without.
+[[nodiscard]] std::optional<Navigation> navigation_of(const SurveyInput& input,
+                                                      const std::vector<ImageFile>& files,
+                                                      const Rig& rig);
 [[nodiscard]] Navigation read_navigation(const SurveyInput& input,
                                          const std::vector<ImageFile>& files,
                                          const Rig* rig);

@@ -103,6 +103,10 @@ class FloorLight {
     [[nodiscard]] PlaceRays rays_at(double column, double row, bool looks) const {
         return rays_.at(column, row, floor_, looks);
     }
+    // On another plane than the sled's floor.
+    [[nodiscard]] PlaceRays rays_at(double column, double row, const Plane& plane) const {
+        return rays_.at(column, row, plane, false);
+    }
     // Adds what a lamp gives, with its doubts where the rays were looked along.
     void add(const FloorLamp& lamp, const PlaceRays& rays, bool looks, PlaceLight& light) const;
     // By a ray for each wavelength, and for all these lamps.

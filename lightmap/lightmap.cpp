@@ -86,13 +86,12 @@ bool ends_in_darkness(const Water& water, const PathRange& paths) {
            kRounding * kDarkShare;
 }
 
-// Of the rule along a ray, whose error is to be little beside the veil's own.
-unsigned points_for(const Rig& rig, const LightmapOptions& options) {
+}  // namespace
+
+unsigned map_veil_points(const Rig& rig, const LightmapOptions& options) {
     constexpr double kShare = 0.1;
     return veil_points(rig, kShare * options.veil_tolerance);
 }
-
-}  // namespace
 
 std::vector<float> signal_of(const Lightmap& map) {
     std::vector<float> signal = map.samples;
@@ -134,7 +133,7 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     const bool has_port = rig.camera.port.has_value();
     const bool has_veil = rig.water.scatters() && options.has_veil;
     const double off_the_veil =
-        has_veil ? options.veil_tolerance + veil_error(rig, points_for(rig, options)) : 0.0;
+        has_veil ? options.veil_tolerance + veil_error(rig, map_veil_points(rig, options)) : 0.0;
     const double off_the_lens = rig.camera.vignetting ? kVignettingRounding : 0.0;
     return {.error = options.error + kRounding + off_the_lens + kTileError +
                      (has_port ? kOverTheIndex : 0.0) + off_the_veil,
@@ -156,7 +155,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
     table_ = signal_table(rig_, paths_, options_.error);
-    if (options.has_veil) veil_points_ = points_for(rig, options);
+    if (options.has_veil) veil_points_ = map_veil_points(rig, options);
     make_veil();
 }
 

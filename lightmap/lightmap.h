@@ -39,6 +39,9 @@ struct LightmapOptions {
     double veil_tolerance = kVeilOfSignal;
 };
 
+// Of the rule along a ray, whose error is to be little beside the veil's own.
+[[nodiscard]] unsigned map_veil_points(const Rig& rig, const LightmapOptions& options);
+
 // How far a signal of a map may be from the exact one of the same lamps, relative, off the beams'
 // edges.
 struct MapPromise {

@@ -57,12 +57,14 @@ inline constexpr std::uint8_t kSaturated = 2;  // the sample is at the white lev
 inline constexpr std::uint8_t kBlack = 4;      // it is at the black level, or the veil's, or under
 inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone passes near (cone_edge.h)
 inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
-inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 5> kDoubts{
+inline constexpr std::uint8_t kRange = 32;    // its depth map has a hole there
+inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 6> kDoubts{
     {{"dark", kDark},
      {"saturated", kSaturated},
      {"black", kBlack},
      {"edge", kEdge},
-     {"clipped", kClipped}}};
+     {"clipped", kClipped},
+     {"range", kRange}}};
 
 struct NoiseLimit {
     double share = 0.01;              // of the map's brightest, in each channel

@@ -7,6 +7,7 @@
 #include "image/any_image.h"
 #include "image/image_size.h"
 #include "image/raw_file.h"
+#include "survey/image_light.h"
 
 #include <fmt/format.h>
 
@@ -63,7 +64,7 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     ImageLook look;
     look.name = file.name.string();
     const bool has_light = static_cast<bool>(survey.light.map);
-    const Sled sled = has_light ? survey.sled_of(file) : Sled{};
+    const std::optional<Sled> sled = has_light ? sled_of(survey, file) : std::nullopt;
     const SurveyImage taken = read_survey_image(file.source, survey.camera);
     look.top = top_of(taken.raw, taken.rounding > 0.0);
     look.white = taken.levels.white;
@@ -71,15 +72,17 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     if (is_bayer(look.mosaic)) look.sites = sites_of_file(taken);
     if (!has_light) return look;
     require_light_for(taken.raw, survey.light);
-    const Lightmap map = as_signal(survey.light.map(sled));
-    if (survey.navigation) look.altitude_m = sled.altitude_m;
+    const Lightmap map = as_signal(light_of(survey, file, 0).map);
+    look.depth = look_at_depth(survey, file);
+    if (look.depth) look.altitude_m = look.depth->depth_m;
+    if (survey.navigation && sled) look.altitude_m = sled->altitude_m;
     look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
     for (double& quotient : look.quotient) quotient /= taken.exposure;
     look.map_mean = means_of(map);
     look.frame = frame_look(taken.raw, taken.levels, map);
     look.says_srgb = says_srgb(file.source);
     if (const auto other =
-            survey.light.map_as_radians ? survey.light.map_as_radians(sled) : std::nullopt) {
+            survey.light.map_as_radians ? survey.light.map_as_radians(*sled) : std::nullopt) {
         look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));
     }
     return look;

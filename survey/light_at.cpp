@@ -31,21 +31,22 @@ PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
 using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;
 
 MapAsRadians map_as_radians(const Rig& rig,
-                            const Navigation& navigation,
+                            const std::optional<Navigation>& navigation,
                             std::vector<Sled> sleds,
                             const LightmapOptions& options) {
     const auto is_small = [](double tilt_rad) {
         return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
     };
-    const auto in_radians = [told = navigation.told()](Sled sled) {
+    if (!navigation) return {};
+    const auto in_radians = [told = navigation->told()](Sled sled) {
         if (told.pitch) sled.pitch_rad /= kRadiansPerDegree;
         if (told.roll) sled.roll_rad /= kRadiansPerDegree;
         return sled;
     };
     bool is_level = true;
     for (Sled& sled : sleds) {
-        if (navigation.told().pitch && !is_small(sled.pitch_rad)) return {};
-        if (navigation.told().roll && !is_small(sled.roll_rad)) return {};
+        if (navigation->told().pitch && !is_small(sled.pitch_rad)) return {};
+        if (navigation->told().roll && !is_small(sled.roll_rad)) return {};
         const Sled other = in_radians(sled);
         if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
         sled = other;
@@ -129,14 +130,16 @@ struct GivenBack {
 }  // namespace
 
 LightAt light_of_rig(const Rig& rig,
-                     const Navigation& navigation,
+                     const std::optional<Navigation>& navigation,
                      const std::vector<ImageFile>& files,
                      bool has_veil,
-                     double veil_tolerance) {
+                     double veil_tolerance,
+                     bool has_relief) {
     std::vector<Sled> sleds;
     for (const ImageFile& file : files) {
+        if (!navigation) break;
         try {
-            sleds.push_back(navigation.pose_of(file.source).sled);
+            sleds.push_back(navigation->pose_of(file.source).sled);
         } catch (const InputError&) {
             // It is said of the image when its turn comes.
         }
@@ -158,7 +161,9 @@ LightAt light_of_rig(const Rig& rig,
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
-            .map_as_radians = map_as_radians(rig, navigation, sleds, options),
+            .relief = has_relief ? std::make_shared<const ReliefMapMaker>(rig, options) : nullptr,
+            .map_as_radians =
+                has_relief ? MapAsRadians() : map_as_radians(rig, navigation, sleds, options),
             .to_srgb = rig.camera.sensor.is_mono() ? std::function<CameraToSrgb()>()
                                                    : [rig] { return camera_to_srgb(rig); },
             .floor_colour = floor_colour(rig),

@@ -6,6 +6,7 @@
 
 #include "image/any_image.h"
 #include "lightmap/lightmap.h"
+#include "lightmap/relief_map.h"
 #include "rig/rig.h"
 #include "spectral/camera_to_srgb.h"
 #include "survey/correction.h"
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +38,8 @@ struct LightAt {
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
+    // The same on a relief, of a rig.
+    std::shared_ptr<const ReliefMapMaker> relief{};
     // The map of tilts that the navigation tells in radians instead of degrees; none where that
     // puts a strobe under the floor. Empty where they are surely degrees.
     std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
@@ -49,12 +53,14 @@ struct LightAt {
 // are.
 inline constexpr double kVeilOfCorrection = 1e-3;
 
-// For the poses of these images: those that have none are passed over here.
+// For the poses of these images: those that have none are passed over here, as without a
+// navigation all have.
 [[nodiscard]] LightAt light_of_rig(const Rig& rig,
-                                   const Navigation& navigation,
+                                   const std::optional<Navigation>& navigation,
                                    const std::vector<ImageFile>& files,
                                    bool has_veil = true,
-                                   double veil_tolerance = kVeilOfCorrection);
+                                   double veil_tolerance = kVeilOfCorrection,
+                                   bool has_relief = false);
 
 // An InputError unless its maps are for such an image: of its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);

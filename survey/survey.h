@@ -7,6 +7,7 @@
 #include "survey/images/survey_image.h"
 #include "survey/light_at.h"
 #include "survey/navigation/navigation.h"
+#include "survey/relief/floor_relief.h"
 
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@ namespace aphotic {
 struct Survey {
     std::vector<ImageFile> files;
     std::optional<Navigation> navigation{};  // none: nothing here depends on a pose
+    std::optional<DepthMaps> depth{};        // none: the floor is the navigation's plane
     LightAt light{};                         // without maps, as by default, it is not known
     CameraNumbers camera;
 

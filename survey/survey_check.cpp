@@ -670,6 +670,11 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
         if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);
     }
     check_attitude(looks, found);
+    std::vector<DepthLook> depths;
+    for (const ImageLook& look : looks)
+        if (look.depth) depths.push_back(*look.depth);
+    for (const std::string& doubt : depth_doubts(depths, rig_altitude_m))
+        found.push_back({"depth", doubt});
     return found;
 }
 

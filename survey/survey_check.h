@@ -36,6 +36,7 @@
 //              of pixels, x the logarithm of one map over the other, y that of the image over the
 //              map of degrees, both less their means in each image. Told where b is over kLikeness
 //              and three of its standard errors from 0, and as near to 1.
+// depth        relief/depth_check.h.
 //
 // Slopes are least squares over the images, with the standard error that their residuals give:
 // floors that differ from image to image widen it. Of maps that are alike there is no slope.
@@ -43,6 +44,7 @@
 
 #include "survey/correction.h"
 #include "survey/images/raw_image.h"
+#include "survey/relief/depth_check.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -103,7 +105,8 @@ struct ImageLook {
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
     FrameLook frame;
-    bool says_srgb = false;  // its file
+    bool says_srgb = false;            // its file
+    std::optional<DepthLook> depth{};  // of its depth map
     Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);
@@ -122,7 +125,7 @@ inline constexpr std::string_view kAboutNavigation = "navigation";
 
 struct Suspicion {
     // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map",
-    // "attitude", "navigation"
+    // "attitude", "navigation", "depth"
     std::string about;
     std::string what;  // with the number that shows it
 };

@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "base/parallel.h"
 #include "base/upper_median.h"
+#include "survey/image_light.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -253,7 +254,7 @@ class ModelCorrector : public Corrector {
     // Their text, changed, does every image of every folder anew.
     [[nodiscard]] Json settings() const override {
         const LightAt& light = survey_.light;
-        Json json{{survey_.navigation ? "rig_sha256" : "map_sha256", light.digest},
+        Json json{{light.toml.empty() ? "map_sha256" : "rig_sha256", light.digest},
                   {"camera_sha256", light.camera_digest},
                   {"keep_mosaic", options_.keep_mosaic},
                   {"gain", nullptr},
@@ -274,6 +275,7 @@ class ModelCorrector : public Corrector {
             json["rig_scale"] = static_cast<double>(light.size.width_px) / own->width_px;
         if (light.has_veil) json["veil"] = *light.has_veil;
         if (light.veil_tolerance) json["tolerance"] = *light.veil_tolerance;
+        if (survey_.depth) json["depth"] = to_json(*survey_.depth);
         return json;
     }
 
@@ -308,13 +310,12 @@ class ModelCorrector : public Corrector {
     }
 
     [[nodiscard]] std::string pose_of(const ImageFile& file) const override {
-        const Sled sled = survey_.sled_of(file);
-        return fmt::format("{} {} {}", sled.altitude_m, sled.pitch_rad, sled.roll_rad);
+        return light_inputs(survey_, file);
     }
 
     [[nodiscard]] CorrectedImage correct(SurveyImage& taken, const ImageFile& file) const override {
-        const Sled sled = survey_.sled_of(file);
         require_light_for(taken.raw, survey_.light);
+        const ImageLight light = light_of(survey_, file, options_.edge_px);
         NoiseLimit limit = options_.limit;
         limit.read_noise = options_.read_noise.value_or(taken.rounding);
         if (!is_middle_known(options_, gain_)) limit = {.share = options_.limit.share};
@@ -322,13 +323,12 @@ class ModelCorrector : public Corrector {
         for (double& channel : at_exposure) channel /= taken.exposure;
         const Correction correction{
             .gain = at_exposure, .middle = gain_.middle, .levels = taken.levels, .limit = limit};
-        CorrectedImage result =
-            corrected(std::move(taken.raw), survey_.light.map(sled), correction);
+        CorrectedImage result = corrected(std::move(taken.raw), light.map, correction);
         if (is_bayer(result.image.mosaic) && !options_.keep_mosaic) result = demosaiced(result);
-        const std::vector<std::uint8_t> edges = survey_.light.edges(sled, options_.edge_px);
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
-        }
+        for (std::size_t i = 0; i < light.edges.size(); ++i)
+            result.doubts[i] |= light.edges[i] != 0 ? kEdge : std::uint8_t{0};
+        for (std::size_t i = 0; i < light.filled.size(); ++i)
+            result.doubts[i] |= light.filled[i] != 0 ? kRange : std::uint8_t{0};
         return result;
     }
 

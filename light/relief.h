@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The sea floor as one image sees it, in place of a plane: the point that each pixel shows, and the
+// normal there, in the sled's frame (rig/geometry.h). Where nothing is known the point is NaN.
+#pragma once
+
+#include "rig/geometry.h"
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+struct Relief {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<Eigen::Vector3f> point_m{};  // row by row
+    std::vector<Eigen::Vector3f> normal{};   // unit, on the side of the camera
+
+    [[nodiscard]] std::size_t at(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
+               static_cast<std::size_t>(column);
+    }
+    [[nodiscard]] bool knows(std::size_t pixel) const { return std::isfinite(point_m[pixel].z()); }
+    // The plane through the point that touches the floor there.
+    [[nodiscard]] Plane plane(std::size_t pixel) const {
+        return {.point_m = point_m[pixel].cast<double>(), .normal = normal[pixel].cast<double>()};
+    }
+};
+
+}  // namespace aphotic

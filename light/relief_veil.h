@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The veil before a relief, which ends at each pixel's own range. What a sight gathers up to a
+// depth Z along the camera's axis depends on the rig alone, not on what lies there, so it is
+// computed once for a rig, at kVeilPlaces places across the image and the depths
+//
+//   Z_k = (1 + kVeilDepthStep)^k metres
+//
+// as images ask for them, and interpolated: linearly over the image, by the cubic in ln Z through
+// four depths. Where a sight enters a beam it is off by the most; tests measure it.
+#pragma once
+
+#include "light/floor_light.h"
+#include "light/relief.h"
+#include "light/veil_map.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kVeilPlaces = 160;
+inline constexpr double kVeilDepthStep = 0.1;
+
+class ReliefVeil {
+  public:
+    // Of a camera of so many pixels. What it is given must outlive it.
+    ReliefVeil(const VeilMap& map, const CameraRays& rays, int width_px, int height_px);
+
+    // R, G, B, one after another; 0 where nothing is known. Of several threads.
+    [[nodiscard]] std::vector<float> before(const Relief& relief) const;
+
+  private:
+    using Level = std::vector<float>;  // by place, row by row, and channel
+    [[nodiscard]] std::shared_ptr<const Level> level(int k) const;
+
+    const VeilMap& map_;
+    const CameraRays& rays_;
+    double spacing_px_;
+    int across_;
+    int down_;
+    mutable std::mutex mutex_;
+    mutable std::map<int, std::shared_ptr<const Level>> levels_;
+};
+
+}  // namespace aphotic

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The signal of the rig's camera on a relief (light/relief_image.h) with the veil before it
+// (light/relief_veil.h): what a lightmap is on a plane. An emitter of a size is as many lamps as at
+// the rig's own altitude.
+#pragma once
+
+#include "light/relief.h"
+#include "lightmap/lightmap.h"
+#include "rig/rig.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace aphotic {
+
+struct ReliefMap {
+    Lightmap map;
+    // 1 for every pixel within so many pixels of an edge of a beam, a shadow's border, or a jump of
+    // the range by more than kReliefJump of itself.
+    std::vector<std::uint8_t> edges;
+};
+
+inline constexpr float kReliefJump = 0.02F;
+
+class ReliefMapMaker {
+  public:
+    ReliefMapMaker(const Rig& rig, const LightmapOptions& options);
+    ~ReliefMapMaker();
+    ReliefMapMaker(const ReliefMapMaker&) = delete;
+    ReliefMapMaker& operator=(const ReliefMapMaker&) = delete;
+
+    [[nodiscard]] ReliefMap map(const Relief& relief, int within_px) const;
+
+    // The ray in water of the middle of the spectrum, along which ranges are taken.
+    [[nodiscard]] WaterRay ray(double column, double row) const;
+
+  private:
+    struct Tables;
+    std::unique_ptr<const Tables> tables_;
+};
+
+}  // namespace aphotic

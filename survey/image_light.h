@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The light that one image of a survey was taken in: on its own relief, where the survey has depth
+// maps (relief/floor_relief.h), or else on the plane that the navigation tells.
+#pragma once
+
+#include "survey/relief/depth_check.h"
+#include "survey/survey.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct ImageLight {
+    Lightmap map;
+    std::vector<std::uint8_t> edges;   // by pixel: an edge of light comes within so many pixels
+    std::vector<std::uint8_t> filled;  // its range is a guess; empty on a plane
+};
+
+// An InputError of this one image where its pose or its depth map is missing or cannot be.
+[[nodiscard]] ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px);
+
+// Its pose; none where depth maps do without.
+[[nodiscard]] std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file);
+
+// All that its light depends on, but for the survey's settings.
+[[nodiscard]] std::string light_inputs(const Survey& survey, const ImageFile& file);
+
+// None without depth maps.
+[[nodiscard]] std::optional<DepthLook> look_at_depth(const Survey& survey, const ImageFile& file);
+
+}  // namespace aphotic

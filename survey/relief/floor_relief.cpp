@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/relief/floor_relief.h"
+
+#include "base/error.h"
+#include "rig/geometry.h"
+#include "survey/relief/local_planes.h"
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+// Along the ray to where Z is so much, or |P|: its origin is within a port.
+double length_to(const WaterRay& ray, double depth_m, DepthIs is) {
+    if (is == DepthIs::AlongAxis) return (depth_m - ray.origin_m.z()) / ray.direction.z();
+    const double along = ray.origin_m.dot(ray.direction);
+    return -along + std::sqrt(along * along + depth_m * depth_m - ray.origin_m.squaredNorm());
+}
+
+Vector3d point_on(const WaterRay& ray, double length_m) {
+    return ray.origin_m + length_m * ray.direction;
+}
+
+std::vector<InversePlace> places_of(const DepthMap& map, DepthIs is, const ReliefMapMaker& rays) {
+    std::vector<InversePlace> places;
+    places.reserve(map.depth_m.size());
+    for (int row = 0; row < map.height_px; ++row) {
+        for (int column = 0; column < map.width_px; ++column) {
+            const float depth_m = map.depth_m[places.size()];
+            const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
+            // A hole has the place of the ray's direction, near enough behind a port.
+            const double length_m = length_to(ray, std::isfinite(depth_m) ? depth_m : 1.0, is);
+            const Vector3d point_m = point_on(ray, length_m);
+            const Vector3d place = point_m / point_m.z();
+            places.push_back(
+                {.place = {static_cast<float>(place.x()), static_cast<float>(place.y())},
+                 .inverse_per_m = std::isfinite(depth_m) && point_m.z() > 0.0
+                                      ? static_cast<float>(1.0 / point_m.z())
+                                      : kUnknown});
+        }
+    }
+    return places;
+}
+
+double pixel_rad(const ReliefMapMaker& rays, int width_px, int height_px) {
+    const double column = 0.5 * width_px;
+    const double row = 0.5 * height_px;
+    return angle_between(rays.ray(column, row).direction, rays.ray(column + 1.0, row).direction);
+}
+
+struct Maker {
+    const std::vector<InversePlace>& places;
+    const ReliefMapMaker& rays;
+    const std::optional<Sled>& floor;
+    NormalsFrom normals;
+    FloorRelief found;
+
+    // On the plane at the pixel's place, or where its own range is.
+    void put(int column, int row, const LocalPlane& plane) {
+        const std::size_t pixel = found.relief.at(column, row);
+        const InversePlace& here = places[pixel];
+        double inverse_per_m = plane.inverse_at(here.place);
+        const double off_per_m = std::abs(inverse_per_m - here.inverse_per_m);
+        constexpr double kRounding = 1e-6;
+        if (off_per_m > std::max(kOffPlane * plane.rms_per_m, kRounding * inverse_per_m))
+            inverse_per_m = here.inverse_per_m;
+        if (!(inverse_per_m > 0.0)) return;
+        const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
+        put(pixel,
+            point_on(ray, length_to(ray, 1.0 / inverse_per_m, DepthIs::AlongAxis)),
+            plane.normal());
+    }
+    void put(std::size_t pixel, const Vector3d& point_m, const Vector3d& normal) {
+        found.relief.point_m[pixel] = point_m.cast<float>();
+        found.relief.normal[pixel] =
+            (normals == NormalsFrom::Floor ? floor_plane(*floor).normal : normal).cast<float>();
+    }
+    void put_floor(int column, int row) {
+        if (!floor) return;
+        const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
+        const Plane plane = floor_plane(*floor);
+        if (const auto length_m = distance_to(plane, ray))
+            put(found.relief.at(column, row), point_on(ray, *length_m), plane.normal);
+    }
+};
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const DepthMaps& maps) {
+    return {{"unit_m", maps.unit_m ? nlohmann::ordered_json(*maps.unit_m) : nullptr},
+            {"is", maps.is == DepthIs::AlongAxis ? "axis" : "ray"},
+            {"normals", maps.normals == NormalsFrom::Depth ? "depth" : "floor"}};
+}
+
+FloorRelief floor_relief(const DepthMap& map,
+                         DepthIs depth_is,
+                         NormalsFrom normals,
+                         const ReliefMapMaker& rays,
+                         const std::optional<Sled>& floor) {
+    constexpr int kHoleBlocks = 60;
+    const std::size_t pixels = map.depth_m.size();
+    const std::vector<InversePlace> places = places_of(map, depth_is, rays);
+    const LocalPlanes finest(places, map.width_px, kLeastBlock_px);
+    const double roughness = finest.roughness();
+    const int block_px =
+        block_for(roughness, pixel_rad(rays, map.width_px, map.height_px), map.width_px);
+    const LocalPlanes planes(places, map.width_px, block_px);
+    const LocalPlanes over_holes(
+        places, map.width_px, std::max(block_px, map.width_px / kHoleBlocks));
+    Maker maker{.places = places,
+                .rays = rays,
+                .floor = floor,
+                .normals = normals,
+                .found = {.relief = {.width_px = map.width_px,
+                                     .height_px = map.height_px,
+                                     .point_m = std::vector<Eigen::Vector3f>(
+                                         pixels, Eigen::Vector3f::Constant(kUnknown)),
+                                     .normal = std::vector<Eigen::Vector3f>(pixels)},
+                          .filled = std::vector<std::uint8_t>(pixels),
+                          .roughness = roughness}};
+    std::size_t holes = 0;
+    for (int row = 0; row < map.height_px; ++row) {
+        for (int column = 0; column < map.width_px; ++column) {
+            const std::size_t pixel = maker.found.relief.at(column, row);
+            const bool is_hole = !std::isfinite(places[pixel].inverse_per_m);
+            maker.found.filled[pixel] = is_hole ? 1 : 0;
+            holes += is_hole ? 1 : 0;
+            const auto plane = (is_hole ? over_holes : planes).at(column, row);
+            if (plane)
+                maker.put(column, row, *plane);
+            else
+                maker.put_floor(column, row);
+        }
+    }
+    if (holes == pixels)
+        throw InputError(
+            "found no depth in any of {} pixels of its depth map; allowed: some, in "
+            "the unit that --depth-unit says",
+            pixels);
+    return std::move(maker.found);
+}
+
+Flatness flatness(const DepthMap& map, const ReliefMapMaker& rays) {
+    const auto off_plane = [&](DepthIs is) {
+        const std::vector<InversePlace> places = places_of(map, is, rays);
+        // One window over all of it.
+        const LocalPlanes whole(places, map.width_px, std::max(map.width_px, map.height_px));
+        return whole.roughness();
+    };
+    return {.along_axis = off_plane(DepthIs::AlongAxis), .along_ray = off_plane(DepthIs::AlongRay)};
+}
+
+}  // namespace aphotic

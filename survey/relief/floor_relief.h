@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// An image's relief (light/relief.h) from its depth map (depth_map.h): points and normals of the
+// planes that touch it (local_planes.h). Where a range lies off its plane by more than kOffPlane of
+// the plane's own rms, the point is where the range has it.
+//
+// Holes are filled by the planes around them, up to a thirtieth of the image's width; larger ones
+// by the plane of the navigation, where there is one, and stay unknown where there is none.
+#pragma once
+
+#include "light/relief.h"
+#include "lightmap/relief_map.h"
+#include "rig/rig.h"
+#include "survey/relief/depth_map.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kOffPlane = 4.0;
+
+enum class DepthIs { AlongAxis, AlongRay };
+enum class NormalsFrom { Depth, Floor };
+
+// The depth maps of a survey: a folder with one an image, or the file of the one image.
+struct DepthMaps {
+    std::filesystem::path place{};
+    std::optional<double> unit_m{};  // none: as depth_map.h says
+    DepthIs is = DepthIs::AlongAxis;
+    NormalsFrom normals = NormalsFrom::Depth;
+};
+
+struct FloorRelief {
+    Relief relief;
+    std::vector<std::uint8_t> filled;  // by pixel: 1 where the map has a hole
+    double roughness = 0.0;            // of the ranges within a window, relative
+};
+
+[[nodiscard]] nlohmann::ordered_json to_json(const DepthMaps& maps);
+
+// The map is of the image's size. floor: the navigation's, for large holes, and for NormalsFrom's
+// Floor, which needs it. An InputError when nothing is known of any pixel.
+[[nodiscard]] FloorRelief floor_relief(const DepthMap& map,
+                                       DepthIs depth_is,
+                                       NormalsFrom normals,
+                                       const ReliefMapMaker& rays,
+                                       const std::optional<Sled>& floor);
+
+// How far the map is from one plane over the whole image, rms and relative, when its depths are
+// taken along the axis and along the rays: which of both a map is of shows over an even floor.
+struct Flatness {
+    double along_axis = 0.0;
+    double along_ray = 0.0;
+};
+[[nodiscard]] Flatness flatness(const DepthMap& map, const ReliefMapMaker& rays);
+
+}  // namespace aphotic
