@@ -31,4 +31,12 @@ struct Relief {
     }
 };
 
+// Every so many of `count` places from the first on, and the last.
+[[nodiscard]] inline std::vector<int> every(int step, int count) {
+    std::vector<int> places;
+    for (int place = 0; place < count - 1; place += step) places.push_back(place);
+    places.push_back(count - 1);
+    return places;
+}
+
 }  // namespace aphotic

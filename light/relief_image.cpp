@@ -6,7 +6,10 @@
 #include "light/relief_shadow.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -67,6 +70,153 @@ struct LampOnRelief {
     std::vector<std::uint32_t> of_edges;
 };
 
+// Pixels from the first up to the next, whose light the corners tell where the relief is smooth.
+struct Cell {
+    int column;
+    int row;
+    int right;
+    int below;
+};
+
+class ReliefPainter {
+  public:
+    ReliefPainter(const FloorLight& light, const Relief& relief, std::vector<LampOnRelief> lamps)
+        : light_(light), relief_(relief), lamps_(std::move(lamps)) {
+        found_.samples.resize(kChannels * relief.point_m.size());
+        found_.seen.resize(relief.point_m.size());
+    }
+
+    void look(int column, int row);
+    void fill(const Cell& cell);
+    [[nodiscard]] ReliefLight take() { return std::move(found_); }
+
+  private:
+    [[nodiscard]] float& sample(std::size_t channel, std::size_t pixel) {
+        return found_.samples[channel * relief_.point_m.size() + pixel];
+    }
+    [[nodiscard]] bool is_smooth(const Cell& cell) const;
+    [[nodiscard]] std::array<std::size_t, 4> corners(const Cell& cell) const {
+        return {relief_.at(cell.column, cell.row),
+                relief_.at(cell.right, cell.row),
+                relief_.at(cell.column, cell.below),
+                relief_.at(cell.right, cell.below)};
+    }
+
+    const FloorLight& light_;
+    const Relief& relief_;
+    std::vector<LampOnRelief> lamps_;
+    ReliefLight found_;
+};
+
+// What each corner counts at a place of the cell.
+std::array<float, 4> shares_at(const Cell& cell, int column, int row) {
+    const float x = static_cast<float>(column - cell.column) /
+                    static_cast<float>(std::max(1, cell.right - cell.column));
+    const float y =
+        static_cast<float>(row - cell.row) / static_cast<float>(std::max(1, cell.below - cell.row));
+    return {(1.0F - x) * (1.0F - y), x * (1.0F - y), (1.0F - x) * y, x * y};
+}
+
+template <typename Work>
+void for_each_pixel(const Cell& cell, const Relief& relief, const Work& work) {
+    const int last_row = cell.below == relief.height_px - 1 ? cell.below : cell.below - 1;
+    const int last_column = cell.right == relief.width_px - 1 ? cell.right : cell.right - 1;
+    for (int row = cell.row; row <= last_row; ++row)
+        for (int column = cell.column; column <= last_column; ++column) work(column, row);
+}
+
+void ReliefPainter::look(int column, int row) {
+    const std::size_t pixel = relief_.at(column, row);
+    if (!relief_.knows(pixel)) return;
+    const Plane plane = relief_.plane(pixel);
+    PlaceRays rays;
+    if (light_.has_port()) {
+        rays = light_.rays_at(column + 0.5, row + 0.5, plane);
+    } else {
+        rays[0] = floor_ray(
+            {.origin_m = Eigen::Vector3d::Zero(), .direction = plane.point_m.normalized()}, plane);
+    }
+    PlaceLight place;
+    std::uint32_t seen = 0;
+    for (LampOnRelief& one : lamps_) {
+        FloorLamp lamp = one.lamp;
+        lamp.floor_m = height_above(plane, lamp.position_m);
+        if (one.hidden[pixel] != 0) seen += one.of_shadow;
+        if (lamp.floor_m <= 0.0 || one.hidden[pixel] != 0 || !rays[0].sees_floor()) continue;
+        if (!one.of_edges.empty()) {
+            const Eigen::Vector3d way = towards(lamp.position_m, rays[0]);
+            for (std::size_t e = 0; e < one.of_edges.size(); ++e)
+                if (one.edges->is_within(e, way)) seen += one.of_edges[e];
+        }
+        light_.add(lamp, rays, false, place);
+    }
+    if (place.is_before || place.is_beyond)
+        throw InputError(
+            "pixel {}, {}: found a path of light that is {}; allowed: from {:g} to {:g} m",
+            column,
+            row,
+            place.is_before ? "shorter" : "longer",
+            kReliefPaths.shortest_m,
+            kReliefPaths.longest_m);
+    found_.seen[pixel] = seen;
+    for (std::size_t c = 0; c < kChannels; ++c)
+        sample(c, pixel) = static_cast<float>(place.signals[c]);
+}
+
+// Points and normals are those of the corners, interpolated, and the same lamps light these.
+bool ReliefPainter::is_smooth(const Cell& cell) const {
+    const std::array<std::size_t, 4> at = corners(cell);
+    for (const std::size_t corner : at)
+        if (!relief_.knows(corner) || found_.seen[corner] != found_.seen[at[0]]) return false;
+    const float most_m = kReliefOff * relief_.point_m[at[0]].norm();
+    bool is = true;
+    for_each_pixel(cell, relief_, [&](int column, int row) {
+        const std::array<float, 4> shares = shares_at(cell, column, row);
+        const std::size_t pixel = relief_.at(column, row);
+        Eigen::Vector3f point_m = relief_.point_m[pixel];
+        Eigen::Vector3f normal = relief_.normal[pixel];
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            point_m -= shares[k] * relief_.point_m[at[k]];
+            normal -= shares[k] * relief_.normal[at[k]];
+        }
+        is &= point_m.norm() <= most_m && normal.norm() <= kReliefOff;
+        for (const LampOnRelief& lamp : lamps_) is &= lamp.hidden[pixel] == lamp.hidden[at[0]];
+    });
+    return is;
+}
+
+void ReliefPainter::fill(const Cell& cell) {
+    const std::array<std::size_t, 4> at = corners(cell);
+    const int column = (cell.column + cell.right) / 2;
+    const int row = (cell.row + cell.below) / 2;
+    bool is_right = is_smooth(cell);
+    if (is_right && std::ranges::find(at, relief_.at(column, row)) == at.end()) {
+        look(column, row);
+        const std::array<float, 4> shares = shares_at(cell, column, row);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            float told = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
+            const float there = sample(c, relief_.at(column, row));
+            is_right &= std::abs(told - there) <= kReliefError * there;
+        }
+    }
+    for_each_pixel(cell, relief_, [&](int x, int y) {
+        const std::size_t pixel = relief_.at(x, y);
+        if (std::ranges::find(at, pixel) != at.end()) return;
+        if (!is_right) {
+            look(x, y);
+            return;
+        }
+        const std::array<float, 4> shares = shares_at(cell, x, y);
+        found_.seen[pixel] = found_.seen[at[0]];
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            float told = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
+            sample(c, pixel) = told;
+        }
+    });
+}
+
 }  // namespace
 
 ReliefLight relief_light(const Rig& rig,
@@ -87,43 +237,24 @@ ReliefLight relief_light(const Rig& rig,
         for (std::size_t e = 0; e < edges[lamp.strobe].count(); ++e)
             lamps.back().of_edges.push_back(static_cast<std::uint32_t>(engine()));
     }
-    const std::size_t pixels = relief.point_m.size();
-    ReliefLight found{.samples = std::vector<float>(kChannels * pixels),
-                      .seen = std::vector<std::uint32_t>(pixels)};
-    const auto paint = [&](int column, int row) {
-        const std::size_t pixel = relief.at(column, row);
-        if (!relief.knows(pixel)) return;
-        const Plane plane = relief.plane(pixel);
-        const PlaceRays rays = light.rays_at(column + 0.5, row + 0.5, plane);
-        PlaceLight place;
-        for (const LampOnRelief& one : lamps) {
-            FloorLamp lamp = one.lamp;
-            lamp.floor_m = height_above(plane, lamp.position_m);
-            if (one.hidden[pixel] != 0) found.seen[pixel] += one.of_shadow;
-            if (lamp.floor_m <= 0.0 || one.hidden[pixel] != 0 || !rays[0].sees_floor()) continue;
-            const Eigen::Vector3d way = towards(lamp.position_m, rays[0]);
-            for (std::size_t e = 0; e < one.of_edges.size(); ++e)
-                if (one.edges->is_within(e, way)) found.seen[pixel] += one.of_edges[e];
-            light.add(lamp, rays, false, place);
-        }
-        if (place.is_before || place.is_beyond)
-            throw InputError(
-                "pixel {}, {}: found a path of light that is {}; allowed: from {:g} to {:g} m",
-                column,
-                row,
-                place.is_before ? "shorter" : "longer",
-                kReliefPaths.shortest_m,
-                kReliefPaths.longest_m);
-        for (std::size_t c = 0; c < kChannels; ++c)
-            found.samples[c * pixels + pixel] = static_cast<float>(place.signals[c]);
+    ReliefPainter painter(light, relief, std::move(lamps));
+    const std::vector<int> columns = every(kReliefCell_px, relief.width_px);
+    const std::vector<int> rows = every(kReliefCell_px, relief.height_px);
+    const auto for_rows = [&](std::size_t count, const auto& work) {
+        parallel_for(
+            count, static_cast<std::size_t>(threads), [&](std::size_t j, std::size_t) { work(j); });
     };
-    parallel_for(static_cast<std::size_t>(relief.height_px),
-                 static_cast<std::size_t>(threads),
-                 [&](std::size_t row, std::size_t) {
-                     for (int column = 0; column < relief.width_px; ++column)
-                         paint(column, static_cast<int>(row));
-                 });
-    return found;
+    for_rows(rows.size(), [&](std::size_t j) {
+        for (const int column : columns) painter.look(column, rows[j]);
+    });
+    for_rows(rows.size() - 1, [&](std::size_t j) {
+        for (std::size_t i = 0; i + 1 < columns.size(); ++i)
+            painter.fill({.column = columns[i],
+                          .row = rows[j],
+                          .right = columns[i + 1],
+                          .below = rows[j + 1]});
+    });
+    return painter.take();
 }
 
 }  // namespace aphotic

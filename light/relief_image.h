@@ -5,7 +5,9 @@
 //
 // No light of a lamp comes to a place that turns away from it, or that the relief hides from it
 // (relief_shadow.h). Shadows are looked for at every n-th pixel as the mesh has them, and at each
-// pixel between places that disagree.
+// pixel between places that disagree. Where points and normals of a cell of kReliefCell_px are
+// those of its corners, interpolated, to kReliefOff of the distance, so is the light, if it is
+// right to kReliefError in the middle; elsewhere every pixel has its own sum.
 #pragma once
 
 #include "light/floor_light.h"
@@ -19,6 +21,10 @@ namespace aphotic {
 
 // That a table of the signal has for a relief of any shape.
 inline constexpr PathRange kReliefPaths{.shortest_m = 0.02, .longest_m = 100.0};
+
+inline constexpr int kReliefCell_px = 4;
+inline constexpr float kReliefOff = 2e-5F;
+inline constexpr float kReliefError = 5e-5F;
 
 struct ReliefLight {
     std::vector<float> samples;  // R, G, B, one after another; 0 where nothing is known

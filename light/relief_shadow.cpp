@@ -23,14 +23,6 @@ const Device& device() {
     return kDevice;
 }
 
-// From 0 to the last, the last included.
-std::vector<int> every(int step, int count) {
-    std::vector<int> places;
-    for (int place = 0; place < count - 1; place += step) places.push_back(place);
-    places.push_back(count - 1);
-    return places;
-}
-
 }  // namespace
 
 struct ReliefShadow::Mesh {

@@ -89,6 +89,10 @@ ReliefMap ReliefMapMaker::map(const Relief& relief, int within_px) const {
     return made;
 }
 
+bool ReliefMapMaker::has_port() const {
+    return tables_->light.has_port();
+}
+
 WaterRay ReliefMapMaker::ray(double column, double row) const {
     const FloorRay found = tables_->light.rays_at(column, row, false)[0];
     return {.origin_m = found.origin_m, .direction = found.direction};

@@ -33,6 +33,8 @@ class ReliefMapMaker {
 
     [[nodiscard]] ReliefMap map(const Relief& relief, int within_px) const;
 
+    // Sights without a port begin at the pupil.
+    [[nodiscard]] bool has_port() const;
     // The ray in water of the middle of the spectrum, along which ranges are taken.
     [[nodiscard]] WaterRay ray(double column, double row) const;
 

@@ -73,8 +73,15 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     if (!has_light) return look;
     require_light_for(taken.raw, survey.light);
     const Lightmap map = as_signal(light_of(survey, file, 0).map);
-    look.depth = look_at_depth(survey, file);
-    if (look.depth) look.altitude_m = look.depth->depth_m;
+    if (const auto other = other_depth(survey, file)) {
+        const auto like = [&](const Lightmap& one) {
+            return likeness(taken.raw, taken.levels, map, as_signal(one));
+        };
+        look.depth_m = other->depth_m;
+        look.as_other_convention = like(other->by_other_convention);
+        if (other->plane) look.as_plane = like(*other->plane);
+        look.altitude_m = look.depth_m;
+    }
     if (survey.navigation && sled) look.altitude_m = sled->altitude_m;
     look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
     for (double& quotient : look.quotient) quotient /= taken.exposure;

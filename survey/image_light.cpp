@@ -2,17 +2,46 @@
 #include "survey/image_light.h"
 
 #include "base/error.h"
+#include "base/upper_median.h"
 
 #include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
 
 namespace aphotic {
 namespace {
 
+double median_of(const DepthMap& map) {
+    std::vector<double> depths;
+    for (const float depth_m : map.depth_m)
+        if (std::isfinite(depth_m)) depths.push_back(depth_m);
+    return upper_median(depths);
+}
+
+// Of another unit all would be too near or too far to be lit.
+void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& map) {
+    constexpr double kOtherUnit = 50.0;
+    const std::optional<Sled> sled = sled_of(survey, file);
+    const std::optional<double> altitude_m =
+        sled ? std::optional(sled->altitude_m) : survey.light.rig_altitude_m;
+    const double depth_m = median_of(map);
+    const double ratio = altitude_m ? depth_m / *altitude_m : 1.0;
+    if (!(ratio > kOtherUnit || ratio < 1.0 / kOtherUnit)) return;
+    throw InputError(
+        "found depths of {:.4g} m in the median of its depth map, and an altitude of {:.4g} m; "
+        "allowed: depths in metres, or in millimetres with --depth-unit mm",
+        depth_m,
+        *altitude_m);
+}
+
 DepthMap depth_map_of(const Survey& survey, const ImageFile& file) {
     const DepthMaps& maps = *survey.depth;
-    return resized(read_depth_map(depth_file(maps.place, file.source), maps.unit_m),
-                   survey.light.size.width_px,
-                   survey.light.size.height_px);
+    DepthMap map = resized(read_depth_map(depth_file(maps.place, file.source), maps.unit_m),
+                           survey.light.size.width_px,
+                           survey.light.size.height_px);
+    require_unit(survey, file, map);
+    return map;
 }
 
 }  // namespace
@@ -55,10 +84,15 @@ std::string light_inputs(const Survey& survey, const ImageFile& file) {
                        std::filesystem::last_write_time(depth).time_since_epoch().count());
 }
 
-std::optional<DepthLook> look_at_depth(const Survey& survey, const ImageFile& file) {
+std::optional<OtherDepth> other_depth(const Survey& survey, const ImageFile& file) {
     if (!survey.depth) return std::nullopt;
-    return look_at_depth(
-        depth_map_of(survey, file), survey.depth->is, *survey.light.relief, sled_of(survey, file));
+    Survey other = survey;
+    other.depth->is =
+        survey.depth->is == DepthIs::AlongAxis ? DepthIs::AlongRay : DepthIs::AlongAxis;
+    const std::optional<Sled> sled = sled_of(survey, file);
+    return OtherDepth{.depth_m = median_of(depth_map_of(survey, file)),
+                      .by_other_convention = light_of(other, file, 0).map,
+                      .plane = sled ? std::optional(survey.light.map(*sled)) : std::nullopt};
 }
 
 }  // namespace aphotic

@@ -4,7 +4,6 @@
 // maps (relief/floor_relief.h), or else on the plane that the navigation tells.
 #pragma once
 
-#include "survey/relief/depth_check.h"
 #include "survey/survey.h"
 
 #include <cstdint>
@@ -29,7 +28,13 @@ struct ImageLight {
 // All that its light depends on, but for the survey's settings.
 [[nodiscard]] std::string light_inputs(const Survey& survey, const ImageFile& file);
 
+// What to hold an image with a depth map against.
+struct OtherDepth {
+    double depth_m = 0.0;           // the median of its map, along the axis
+    Lightmap by_other_convention;   // DepthIs
+    std::optional<Lightmap> plane;  // of the navigation, where there is one
+};
 // None without depth maps.
-[[nodiscard]] std::optional<DepthLook> look_at_depth(const Survey& survey, const ImageFile& file);
+[[nodiscard]] std::optional<OtherDepth> other_depth(const Survey& survey, const ImageFile& file);
 
 }  // namespace aphotic

@@ -45,6 +45,7 @@ constexpr double kTurned = 1.0;  // a slope of 1 - kTurned has turned round
 constexpr double kStandardErrors = 5.0;
 constexpr double kGains = 100.0;
 constexpr double kLikeness = 0.5;
+constexpr double kLikeAltitudes = 0.5;
 // Fewer than of other lines: sleds whose tilts all are so small are rare to begin with, and floors'
 // own patterns leave 16 images of degrees an error of a fourth.
 constexpr double kErrorsOfAttitude = 3.0;
@@ -518,19 +519,63 @@ void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found
                              has_poses ? "altitude column, " : "")});
 }
 
-void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+// Whether the images are like that other map, and not like their own: a slope of 1, not of 0. The
+// slope, or none.
+std::optional<double> like_other(std::span<const ImageLook> looks, Likeness ImageLook::*other) {
     const auto [slope, error] = line_of_all(
-        looks, [](const ImageLook& look) -> const Likeness& { return look.as_radians; }, kSpread);
-    if (slope < std::max(kLikeness, kErrorsOfAttitude * error) ||
-        slope > 1.0 + std::max(1.0 - kLikeness, kErrorsOfAttitude * error)) {
-        return;
-    }
+        looks, [other](const ImageLook& look) -> const Likeness& { return look.*other; }, kSpread);
+    const bool is_like = slope >= std::max(kLikeness, kErrorsOfAttitude * error) &&
+                         slope <= 1.0 + std::max(1.0 - kLikeness, kErrorsOfAttitude * error);
+    return is_like ? std::optional(slope) : std::nullopt;
+}
+
+void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    const std::optional<double> slope = like_other(looks, &ImageLook::as_radians);
+    if (!slope) return;
     found.push_back(
         {.about = "attitude",
          .what = fmt::format("pitch and roll are all within {} degrees, and the images match the "
                              "angles read as radians ({:.2g}; 0 for degrees). Are they in radians?",
                              kSmall_deg,
-                             slope)});
+                             *slope)});
+}
+
+// Of the navigation's altitudes with the depths of maps, as logarithms; NaN of a few.
+double likeness_of_altitudes(std::span<const ImageLook> looks) {
+    Eigen::ArrayX2d both(std::ssize(looks), 2);
+    Eigen::Index count = 0;
+    for (const ImageLook& look : looks) {
+        if (!look.depth_m || !look.altitude_m) continue;
+        both.row(count++) << std::log(*look.depth_m), std::log(*look.altitude_m);
+    }
+    if (count < static_cast<Eigen::Index>(kEnoughImages))
+        return std::numeric_limits<double>::quiet_NaN();
+    both.conservativeResize(count, 2);
+    both.rowwise() -= both.colwise().mean().eval();
+    const Eigen::Array2d spread = both.square().colwise().mean().sqrt();
+    if (spread(1) < kSpread) return std::numeric_limits<double>::quiet_NaN();
+    return (both.col(0) * both.col(1)).mean() / spread.prod();
+}
+
+void check_depth(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    const auto tell = [&](std::string what) { found.push_back({"depth", std::move(what)}); };
+    const double likeness = likeness_of_altitudes(looks);
+    if (const auto other = like_other(looks, &ImageLook::as_other_convention)) {
+        tell(
+            fmt::format("the images match depths of the other convention ({:.2g}; 0 for that which "
+                        "was taken). Is --depth-is the other?",
+                        *other));
+    } else if (const auto plane = like_other(looks, &ImageLook::as_plane)) {
+        tell(
+            fmt::format("the images match the navigation's plane better than their depth maps "
+                        "({:.2g}; 0 for the maps). Are the maps other images'?",
+                        *plane));
+    } else if (likeness < kLikeAltitudes) {
+        tell(
+            fmt::format("the depths of maps do not go with the navigation's altitudes "
+                        "(correlation {:.2g}). Are the maps other images'?",
+                        likeness));
+    }
 }
 
 }  // namespace
@@ -670,11 +715,7 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
         if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);
     }
     check_attitude(looks, found);
-    std::vector<DepthLook> depths;
-    for (const ImageLook& look : looks)
-        if (look.depth) depths.push_back(*look.depth);
-    for (const std::string& doubt : depth_doubts(depths, rig_altitude_m))
-        found.push_back({"depth", doubt});
+    check_depth(looks, found);
     return found;
 }
 

@@ -36,7 +36,11 @@
 //              of pixels, x the logarithm of one map over the other, y that of the image over the
 //              map of degrees, both less their means in each image. Told where b is over kLikeness
 //              and three of its standard errors from 0, and as near to 1.
-// depth        relief/depth_check.h.
+// depth        Depth maps are taken along the axis, or along rays, or are other images': told as
+// for
+//              the attitude, by the light of the other convention, and by that of the navigation's
+//              plane; or where the correlation of the navigation's altitudes with the maps' median
+//              depths is under kLikeAltitudes.
 //
 // Slopes are least squares over the images, with the standard error that their residuals give:
 // floors that differ from image to image widen it. Of maps that are alike there is no slope.
@@ -44,7 +48,6 @@
 
 #include "survey/correction.h"
 #include "survey/images/raw_image.h"
-#include "survey/relief/depth_check.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -105,8 +108,12 @@ struct ImageLook {
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
     FrameLook frame;
-    bool says_srgb = false;            // its file
-    std::optional<DepthLook> depth{};  // of its depth map
+    bool says_srgb = false;  // its file
+    // Of images with a depth map: its median along the axis, and how like the image is to the map
+    // of light by the other convention, and to that on the navigation's plane.
+    std::optional<double> depth_m{};
+    Likeness as_other_convention{};
+    Likeness as_plane{};
     Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);

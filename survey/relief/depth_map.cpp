@@ -158,7 +158,8 @@ fs::path depth_file(const fs::path& place, const fs::path& image) {
     for (const std::string& start : {stem, "depth_" + stem, name}) {
         for (const char* extension : kExtensions) {
             const fs::path file = place / (start + extension);
-            if (fs::is_regular_file(file) && std::ranges::find(found, file) == found.end())
+            if (fs::is_regular_file(file) && !fs::equivalent(file, image) &&
+                std::ranges::find(found, file) == found.end())
                 found.push_back(file);
         }
     }

@@ -57,16 +57,37 @@ double pixel_rad(const ReliefMapMaker& rays, int width_px, int height_px) {
     return angle_between(rays.ray(column, row).direction, rays.ray(column + 1.0, row).direction);
 }
 
-struct Maker {
+// By some rows in the middle of the image.
+double roughness_of(const std::vector<InversePlace>& places, int width_px) {
+    const std::size_t eighth = places.size() / static_cast<std::size_t>(width_px) / 8;
+    const auto row = [&](std::size_t n) {
+        return places.begin() + static_cast<std::ptrdiff_t>(n * static_cast<std::size_t>(width_px));
+    };
+    const std::vector<InversePlace> middle =
+        eighth == 0 ? places : std::vector<InversePlace>(row(3 * eighth), row(5 * eighth));
+    const double found = LocalPlanes(middle, width_px, kLeastBlock_px).roughness();
+    return found > 0.0 || eighth == 0 ? found
+                                      : LocalPlanes(places, width_px, kLeastBlock_px).roughness();
+}
+
+struct ReliefWriter {
     const std::vector<InversePlace>& places;
     const ReliefMapMaker& rays;
     const std::optional<Sled>& floor;
     NormalsFrom normals;
-    FloorRelief found;
 
+    // Where the pixel's sight is so deep.
+    [[nodiscard]] Vector3d point_at(int column, int row, std::size_t pixel, double depth_m) const {
+        if (!rays.has_port()) {
+            const Eigen::Vector2d place = places[pixel].place.cast<double>();
+            return {depth_m * place.x(), depth_m * place.y(), depth_m};
+        }
+        const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
+        return point_on(ray, length_to(ray, depth_m, DepthIs::AlongAxis));
+    }
     // On the plane at the pixel's place, or where its own range is.
-    void put(int column, int row, const LocalPlane& plane) {
-        const std::size_t pixel = found.relief.at(column, row);
+    void put(int column, int row, const LocalPlane& plane, Relief& relief) const {
+        const std::size_t pixel = relief.at(column, row);
         const InversePlace& here = places[pixel];
         double inverse_per_m = plane.inverse_at(here.place);
         const double off_per_m = std::abs(inverse_per_m - here.inverse_per_m);
@@ -74,22 +95,20 @@ struct Maker {
         if (off_per_m > std::max(kOffPlane * plane.rms_per_m, kRounding * inverse_per_m))
             inverse_per_m = here.inverse_per_m;
         if (!(inverse_per_m > 0.0)) return;
-        const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
-        put(pixel,
-            point_on(ray, length_to(ray, 1.0 / inverse_per_m, DepthIs::AlongAxis)),
-            plane.normal());
+        relief.point_m[pixel] = point_at(column, row, pixel, 1.0 / inverse_per_m).cast<float>();
+        relief.normal[pixel] =
+            (normals == NormalsFrom::Floor ? floor_plane(*floor).normal : plane.normal())
+                .cast<float>();
     }
-    void put(std::size_t pixel, const Vector3d& point_m, const Vector3d& normal) {
-        found.relief.point_m[pixel] = point_m.cast<float>();
-        found.relief.normal[pixel] =
-            (normals == NormalsFrom::Floor ? floor_plane(*floor).normal : normal).cast<float>();
-    }
-    void put_floor(int column, int row) {
+    void put_floor(int column, int row, Relief& relief) const {
         if (!floor) return;
+        const std::size_t pixel = relief.at(column, row);
         const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
         const Plane plane = floor_plane(*floor);
-        if (const auto length_m = distance_to(plane, ray))
-            put(found.relief.at(column, row), point_on(ray, *length_m), plane.normal);
+        const auto length_m = distance_to(plane, ray);
+        if (!length_m) return;
+        relief.point_m[pixel] = point_on(ray, *length_m).cast<float>();
+        relief.normal[pixel] = plane.normal.cast<float>();
     }
 };
 
@@ -106,57 +125,43 @@ FloorRelief floor_relief(const DepthMap& map,
                          NormalsFrom normals,
                          const ReliefMapMaker& rays,
                          const std::optional<Sled>& floor) {
-    constexpr int kHoleBlocks = 60;
+    constexpr int kHoleBlocks = 90;
     const std::size_t pixels = map.depth_m.size();
     const std::vector<InversePlace> places = places_of(map, depth_is, rays);
-    const LocalPlanes finest(places, map.width_px, kLeastBlock_px);
-    const double roughness = finest.roughness();
-    const int block_px =
-        block_for(roughness, pixel_rad(rays, map.width_px, map.height_px), map.width_px);
-    const LocalPlanes planes(places, map.width_px, block_px);
-    const LocalPlanes over_holes(
-        places, map.width_px, std::max(block_px, map.width_px / kHoleBlocks));
-    Maker maker{.places = places,
-                .rays = rays,
-                .floor = floor,
-                .normals = normals,
-                .found = {.relief = {.width_px = map.width_px,
-                                     .height_px = map.height_px,
-                                     .point_m = std::vector<Eigen::Vector3f>(
-                                         pixels, Eigen::Vector3f::Constant(kUnknown)),
-                                     .normal = std::vector<Eigen::Vector3f>(pixels)},
-                          .filled = std::vector<std::uint8_t>(pixels),
-                          .roughness = roughness}};
+    const auto is_hole = [&](std::size_t pixel) {
+        return !std::isfinite(places[pixel].inverse_per_m);
+    };
+    FloorRelief found{.relief = {.width_px = map.width_px,
+                                 .height_px = map.height_px,
+                                 .point_m = std::vector<Eigen::Vector3f>(
+                                     pixels, Eigen::Vector3f::Constant(kUnknown)),
+                                 .normal = std::vector<Eigen::Vector3f>(pixels)},
+                      .filled = std::vector<std::uint8_t>(pixels),
+                      .roughness = roughness_of(places, map.width_px)};
     std::size_t holes = 0;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+        holes += found.filled[pixel] = is_hole(pixel) ? 1 : 0;
+    if (holes == pixels)
+        throw InputError("found no depth in any of {} pixels of its depth map; allowed: some",
+                         pixels);
+    const int block_px =
+        block_for(found.roughness, pixel_rad(rays, map.width_px, map.height_px), map.width_px);
+    const LocalPlanes planes(places, map.width_px, block_px);
+    std::optional<LocalPlanes> over_holes;
+    if (holes > 0)
+        over_holes.emplace(places, map.width_px, std::max(block_px, map.width_px / kHoleBlocks));
+    ReliefWriter writer{.places = places, .rays = rays, .floor = floor, .normals = normals};
     for (int row = 0; row < map.height_px; ++row) {
         for (int column = 0; column < map.width_px; ++column) {
-            const std::size_t pixel = maker.found.relief.at(column, row);
-            const bool is_hole = !std::isfinite(places[pixel].inverse_per_m);
-            maker.found.filled[pixel] = is_hole ? 1 : 0;
-            holes += is_hole ? 1 : 0;
-            const auto plane = (is_hole ? over_holes : planes).at(column, row);
+            const std::size_t pixel = found.relief.at(column, row);
+            const auto plane = (is_hole(pixel) ? *over_holes : planes).at(column, row);
             if (plane)
-                maker.put(column, row, *plane);
+                writer.put(column, row, *plane, found.relief);
             else
-                maker.put_floor(column, row);
+                writer.put_floor(column, row, found.relief);
         }
     }
-    if (holes == pixels)
-        throw InputError(
-            "found no depth in any of {} pixels of its depth map; allowed: some, in "
-            "the unit that --depth-unit says",
-            pixels);
-    return std::move(maker.found);
-}
-
-Flatness flatness(const DepthMap& map, const ReliefMapMaker& rays) {
-    const auto off_plane = [&](DepthIs is) {
-        const std::vector<InversePlace> places = places_of(map, is, rays);
-        // One window over all of it.
-        const LocalPlanes whole(places, map.width_px, std::max(map.width_px, map.height_px));
-        return whole.roughness();
-    };
-    return {.along_axis = off_plane(DepthIs::AlongAxis), .along_ray = off_plane(DepthIs::AlongRay)};
+    return found;
 }
 
 }  // namespace aphotic

@@ -51,12 +51,4 @@ struct FloorRelief {
                                        const ReliefMapMaker& rays,
                                        const std::optional<Sled>& floor);
 
-// How far the map is from one plane over the whole image, rms and relative, when its depths are
-// taken along the axis and along the rays: which of both a map is of shows over an even floor.
-struct Flatness {
-    double along_axis = 0.0;
-    double along_ray = 0.0;
-};
-[[nodiscard]] Flatness flatness(const DepthMap& map, const ReliefMapMaker& rays);
-
 }  // namespace aphotic

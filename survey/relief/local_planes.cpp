@@ -3,10 +3,7 @@
 
 #include "base/upper_median.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,54 +13,47 @@ namespace {
 constexpr double kKnownShare = 0.25;
 constexpr double kWorse = 2.0;  // times the least rms, from where a window's own is left
 
-// Sums over some pixels, of places less the block's own middle so that no digits are lost.
+// Sums over some pixels of their places (x, y, z = 1/Z). Of doubles: their variances are a
+// millionth of their squares at least.
 struct Moments {
     double count = 0.0;
-    Eigen::Vector3d first = Eigen::Vector3d::Zero();  // of x, y, 1/Z
-    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+    Eigen::Array3d first = Eigen::Array3d::Zero();
+    Eigen::Array3d squares = Eigen::Array3d::Zero();
+    Eigen::Array3d products = Eigen::Array3d::Zero();  // yz, zx, xy
 
-    void add(const Eigen::Vector3d& value) {
+    void add(double x, double y, double z) {
         count += 1.0;
-        first += value;
-        second += value * value.transpose();
-    }
-    // The same about another middle, which lies `by` farther on.
-    [[nodiscard]] Moments about(const Eigen::Vector3d& by) const {
-        return {.count = count,
-                .first = first - count * by,
-                .second = second - first * by.transpose() - by * first.transpose() +
-                          count * by * by.transpose()};
+        first += Eigen::Array3d(x, y, z);
+        squares += Eigen::Array3d(x * x, y * y, z * z);
+        products += Eigen::Array3d(y * z, z * x, x * y);
     }
     Moments& operator+=(const Moments& other) {
         count += other.count;
         first += other.first;
-        second += other.second;
+        squares += other.squares;
+        products += other.products;
         return *this;
     }
 };
 
-struct Block {
-    Moments moments;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-};
-
-// Of the plane through these, about that middle.
-LocalPlane plane_of(const Moments& sums, const Eigen::Vector3d& middle) {
-    const Eigen::Vector3d mean = sums.first / sums.count;
-    const Eigen::Matrix3d spread = sums.second / sums.count - mean * mean.transpose();
-    const Eigen::Matrix2d places = spread.topLeftCorner<2, 2>();
-    const Eigen::Vector2d along = spread.topRightCorner<2, 1>();
-    LocalPlane plane;
-    // One row or column of pixels has a slope along itself alone.
+LocalPlane plane_through(const Moments& sums) {
+    const Eigen::Array3d mean = sums.first / sums.count;
+    const Eigen::Array3d variance = sums.squares / sums.count - mean * mean;
+    const Eigen::Array3d common =
+        sums.products / sums.count -
+        Eigen::Array3d(mean(1) * mean(2), mean(2) * mean(0), mean(0) * mean(1));
+    // One row or column of pixels has no slope across itself.
     constexpr double kLeastSpread = 1e-6;
-    const Eigen::Vector2d slope =
-        places.determinant() > kLeastSpread * places.trace() * places.trace()
-            ? Eigen::Vector2d(places.inverse() * along)
-            : Eigen::Vector2d::Zero();
-    const Eigen::Vector3d centre = middle + mean;
-    plane.abc << centre.z() - slope.dot(centre.head<2>()), slope;
-    plane.rms_per_m = std::sqrt(std::max(0.0, spread(2, 2) - slope.dot(along)));
-    return plane;
+    const double determinant = variance(0) * variance(1) - common(2) * common(2);
+    const double trace = variance(0) + variance(1);
+    double b = 0.0;
+    double c = 0.0;
+    if (determinant > kLeastSpread * trace * trace) {
+        b = (variance(1) * common(1) - common(2) * common(0)) / determinant;
+        c = (variance(0) * common(0) - common(2) * common(1)) / determinant;
+    }
+    return {.abc = {mean(2) - b * mean(0) - c * mean(1), b, c},
+            .rms_per_m = std::sqrt(std::max(0.0, variance(2) - b * common(1) - c * common(0)))};
 }
 
 }  // namespace
@@ -76,38 +66,34 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
       down_(0) {
     const auto height_px = static_cast<int>(places.size()) / width_px;
     down_ = (height_px + block_px - 1) / block_px;
-    std::vector<Block> blocks(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
+    std::vector<Moments> blocks(static_cast<std::size_t>(across_) *
+                                static_cast<std::size_t>(down_));
     for (int row = 0; row < height_px; ++row) {
+        Moments* const blocks_of_row =
+            &blocks[static_cast<std::size_t>(row / block_px) * static_cast<std::size_t>(across_)];
         for (int column = 0; column < width_px; ++column) {
             const InversePlace& one = places[static_cast<std::size_t>(row * width_px + column)];
-            if (!std::isfinite(one.inverse_per_m)) continue;
-            const Eigen::Vector3d value(one.place.x(), one.place.y(), one.inverse_per_m);
-            Block& block =
-                blocks[static_cast<std::size_t>(row / block_px * across_ + column / block_px)];
-            if (block.moments.count == 0.0) block.middle = value;
-            block.moments.add(value - block.middle);
+            if (std::isfinite(one.inverse_per_m))
+                blocks_of_row[column / block_px].add(
+                    one.place.x(), one.place.y(), one.inverse_per_m);
         }
     }
     const double whole = 9.0 * block_px * block_px;
     for (int j = 0; j < down_; ++j) {
         for (int i = 0; i < across_; ++i) {
             Moments sums;
-            std::optional<Eigen::Vector3d> middle;
-            for (int y = std::max(0, j - 1); y <= std::min(down_ - 1, j + 1); ++y) {
-                for (int x = std::max(0, i - 1); x <= std::min(across_ - 1, i + 1); ++x) {
-                    const Block& block = blocks[static_cast<std::size_t>(y * across_ + x)];
-                    if (block.moments.count == 0.0) continue;
-                    if (!middle) middle = block.middle;
-                    sums += block.moments.about(*middle - block.middle);
-                }
-            }
+            for (int y = std::max(0, j - 1); y <= std::min(down_ - 1, j + 1); ++y)
+                for (int x = std::max(0, i - 1); x <= std::min(across_ - 1, i + 1); ++x)
+                    sums += blocks[static_cast<std::size_t>(y * across_ + x)];
             Window& window = windows_.emplace_back();
             window.is_known = sums.count >= std::max(4.0, kKnownShare * whole);
             if (!window.is_known) continue;
-            window.plane = plane_of(sums, *middle);
-            window.mean_per_m = middle->z() + sums.first.z() / sums.count;
+            window.plane = plane_through(sums);
+            window.mean_per_m = sums.first(2) / sums.count;
         }
     }
+    for (int j = 0; j < down_; ++j)
+        for (int i = 0; i < across_; ++i) judge(i, j);
 }
 
 const LocalPlanes::Window* LocalPlanes::window(int across, int down) const {
@@ -116,24 +102,51 @@ const LocalPlanes::Window* LocalPlanes::window(int across, int down) const {
     return found.is_known ? &found : nullptr;
 }
 
-std::optional<LocalPlane> LocalPlanes::at(int column, int row) const {
-    constexpr int kReach = 2;
-    const int i = column / block_px_;
-    const int j = row / block_px_;
-    const Window* const own = window(i, j);
-    double least = own != nullptr ? own->plane.rms_per_m : std::numeric_limits<double>::infinity();
-    // Rounding of single precision is no roughness.
+// Rounding of single precision is no roughness.
+void LocalPlanes::judge(int across, int down) {
     constexpr double kRounding = 1e-6;
-    if (own != nullptr && least <= kRounding * own->mean_per_m) return own->plane;
-    for (int y = j - 1; y <= j + 1; ++y) {
-        for (int x = i - 1; x <= i + 1; ++x)
+    Window& own = windows_[static_cast<std::size_t>(down * across_ + across)];
+    double least = own.plane.rms_per_m;
+    for (int y = down - 1; y <= down + 1; ++y) {
+        for (int x = across - 1; x <= across + 1; ++x)
             if (const Window* const near = window(x, y))
                 least = std::min(least, near->plane.rms_per_m);
     }
-    if (own != nullptr && own->plane.rms_per_m <= kWorse * least) return own->plane;
+    own.is_good =
+        own.is_known && own.plane.rms_per_m <= std::max(kWorse * least, kRounding * own.mean_per_m);
+}
+
+std::optional<LocalPlane> LocalPlanes::at(int column, int row) const {
+    const auto found = between(column, row);
+    return found ? found : best(column, row);
+}
+
+std::optional<LocalPlane> LocalPlanes::between(int column, int row) const {
+    const double x = std::clamp((column + 0.5) / block_px_ - 0.5, 0.0, across_ - 1.0);
+    const double y = std::clamp((row + 0.5) / block_px_ - 0.5, 0.0, down_ - 1.0);
+    const int i = static_cast<int>(x);
+    const int j = static_cast<int>(y);
+    LocalPlane found;
+    for (int k = 0; k < 4; ++k) {
+        const int across = std::min(i + k % 2, across_ - 1);
+        const int down = std::min(j + k / 2, down_ - 1);
+        const Window& one = windows_[static_cast<std::size_t>(down * across_ + across)];
+        if (!one.is_good) return std::nullopt;
+        const double share =
+            (k % 2 == 0 ? 1.0 - x + i : x - i) * (k / 2 == 0 ? 1.0 - y + j : y - j);
+        found.abc += share * one.plane.abc;
+        found.rms_per_m += share * one.plane.rms_per_m;
+    }
+    return found;
+}
+
+std::optional<LocalPlane> LocalPlanes::best(int column, int row) const {
+    constexpr int kReach = 2;
+    const int i = column / block_px_;
+    const int j = row / block_px_;
     const InversePlace& here = places_[static_cast<std::size_t>(row * width_px_ + column)];
     const bool is_known = std::isfinite(here.inverse_per_m);
-    const Window* best = nullptr;
+    const Window* found = nullptr;
     double best_score = std::numeric_limits<double>::infinity();
     for (int y = j - kReach; y <= j + kReach; ++y) {
         for (int x = i - kReach; x <= i + kReach; ++x) {
@@ -144,11 +157,10 @@ std::optional<LocalPlane> LocalPlanes::at(int column, int row) const {
             const double score = std::hypot(near->plane.rms_per_m, off);
             if (score >= best_score) continue;
             best_score = score;
-            best = near;
+            found = near;
         }
     }
-    if (best == nullptr) return std::nullopt;
-    return best->plane;
+    return found != nullptr ? std::optional(found->plane) : std::nullopt;
 }
 
 double LocalPlanes::roughness() const {

@@ -63,8 +63,12 @@ class LocalPlanes {
         LocalPlane plane;
         double mean_per_m = 0.0;
         bool is_known = false;
+        bool is_good = false;  // beside its neighbours
     };
     [[nodiscard]] const Window* window(int across, int down) const;
+    void judge(int across, int down);
+    [[nodiscard]] std::optional<LocalPlane> between(int column, int row) const;
+    [[nodiscard]] std::optional<LocalPlane> best(int column, int row) const;
 
     const std::vector<InversePlace>& places_;
     int width_px_;
