@@ -7,6 +7,7 @@
 #include "survey/images/survey_image.h"
 #include "survey/light_at.h"
 #include "survey/navigation/navigation.h"
+#include "survey/strobes_at.h"
 
 #include <optional>
 #include <vector>
@@ -18,6 +19,8 @@ struct Survey {
     std::optional<Navigation> navigation{};  // none: nothing here depends on a pose
     LightAt light{};                         // without maps, as by default, it is not known
     CameraNumbers camera;
+    StrobesAt strobes{};  // none, as by default: the light is not known strobe by strobe
+    Dropouts dropouts = Dropouts::Mark;
 
     // An InputError when the navigation has no pose for it.
     [[nodiscard]] Sled sled_of(const ImageFile& file) const {

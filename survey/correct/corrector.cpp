@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "base/parallel.h"
 #include "base/upper_median.h"
+#include "survey/dropout_check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -264,6 +265,7 @@ class ModelCorrector : public Corrector {
                   {"read_noise", nullptr},
                   {"electrons", options_.limit.electrons_per_number},
                   {"edge_px", options_.edge_px},
+                  {"dropouts", name_of(survey_.dropouts)},
                   {"rig_scale", nullptr}};
         if (given_)
             json["gain"] = given_->gain;
@@ -295,6 +297,12 @@ class ModelCorrector : public Corrector {
         std::ranges::move(
             suspicions(look.images, mosaic_of(look.images), survey_.light.rig_altitude_m),
             std::back_inserter(report.looks_wrong));
+        if (look.doubt) report.looks_wrong.push_back(*look.doubt);
+        if (survey_.camera.exposure_by == ExposureBy::Model) {
+            if (const auto doubt = exposure_doubt(look.images))
+                report.looks_wrong.push_back(*doubt);
+        }
+        scales_ = look.scales;
         report.not_checked = not_checked(look.images);
         report.looks = look.images;
         watch.looks_wrong(report.looks_wrong);
@@ -312,9 +320,13 @@ class ModelCorrector : public Corrector {
         return fmt::format("{} {} {}", sled.altitude_m, sled.pitch_rad, sled.roll_rad);
     }
 
+    void judge(SurveyImage& taken, const ImageFile& file) const override {
+        require_light_for(taken.raw, survey_.light);
+        aphotic::judge(taken, survey_, file, scales_);
+    }
+
     [[nodiscard]] CorrectedImage correct(SurveyImage& taken, const ImageFile& file) const override {
         const Sled sled = survey_.sled_of(file);
-        require_light_for(taken.raw, survey_.light);
         NoiseLimit limit = options_.limit;
         limit.read_noise = options_.read_noise.value_or(taken.rounding);
         if (!is_middle_known(options_, gain_)) limit = {.share = options_.limit.share};
@@ -323,7 +335,7 @@ class ModelCorrector : public Corrector {
         const Correction correction{
             .gain = at_exposure, .middle = gain_.middle, .levels = taken.levels, .limit = limit};
         CorrectedImage result =
-            corrected(std::move(taken.raw), survey_.light.map(sled), correction);
+            corrected(std::move(taken.raw), light_on(taken, survey_, sled), correction);
         if (is_bayer(result.image.mosaic) && !options_.keep_mosaic) result = demosaiced(result);
         const std::vector<std::uint8_t> edges = survey_.light.edges(sled, options_.edge_px);
         for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -338,6 +350,7 @@ class ModelCorrector : public Corrector {
     std::vector<Suspicion> doubts_;  // about what is given
     std::optional<SurveyGain> given_;
     SurveyGain gain_;
+    DropoutScales scales_;
 };
 
 }  // namespace
