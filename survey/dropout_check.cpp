@@ -25,6 +25,7 @@ LightCells light_cells(const SurveyImage& taken, const Survey& survey, const Ima
         image.light = cells_of(survey.light.map(survey.sled_of(file)), image.side);
     } else {
         std::ranges::fill(image.light, 1.0);
+        image.has_map = false;
     }
     return image;
 }

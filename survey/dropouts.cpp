@@ -268,14 +268,21 @@ CellPlane cells_of(const SurveyImage& taken, int side) {
 }
 
 CellPlane cells_of(const Lightmap& map, int side) {
-    CellMeans cells(side, map.width_px, map.height_px);
-    const std::size_t width = size_of(map.width_px);
+    // Of coarse maps, pixels are split, for a cell's border may pass within.
+    constexpr int kFine_px = 256;
+    const int split = std::max(1, kFine_px / std::max(map.width_px, map.height_px));
+    CellMeans cells(side, split * map.width_px, split * map.height_px);
+    const std::size_t fine_width = size_of(split * map.width_px);
     const std::size_t plane = map.samples.size() / kChannels;
-    for (std::size_t i = 0; i < plane; ++i) {
-        const double veil = map.veil.empty() ? 0.0 : double{map.veil[plane + i]};
-        const double signal = double{map.samples[plane + i]} + veil;
-        if (i % width == 0) cells.begin_row(i / width);
-        if (signal > 0.0) cells.add(i % width, signal, false);
+    for (std::size_t row = 0; row < size_of(split * map.height_px); ++row) {
+        cells.begin_row(row);
+        for (std::size_t column = 0; column < fine_width; ++column) {
+            const std::size_t i =
+                plane + row / size_of(split) * size_of(map.width_px) + column / size_of(split);
+            const double veil = map.veil.empty() ? 0.0 : double{map.veil[i]};
+            const double signal = double{map.samples[i]} + veil;
+            if (signal > 0.0) cells.add(column, signal, false);
+        }
     }
     CellPlane means = cells.means();
     for (double& mean : means) mean = std::isfinite(mean) ? mean : 0.0;
@@ -287,6 +294,7 @@ DropoutScales learned(std::span<const LightCells> images, bool level_is_free) {
     DropoutScales scales{.level = first_level(images), .spread = kFloorSpread};
     if (!std::isfinite(scales.level)) return {};
     const bool are_few = images.size() < kEnoughToLearn;
+    if (are_few && !images.front().has_map) return {};
     if (level_is_free) scales.spread = kUnseen;
     scales.detail.assign(std::bit_width(unsigned{kCells}) - 1, kFewDetail);
     for (int round = 0; round < kRounds; ++round) {
@@ -322,7 +330,7 @@ DropoutScales learned(std::span<const LightCells> images, bool level_is_free) {
 }
 
 std::string words_of(const MarkedImage& marked) {
-    const std::string of_light = fmt::format("{:.2g} of the survey's light", marked.share);
+    const std::string of_light = fmt::format("lit by {:.2g} of the survey's light", marked.share);
     if (marked.strobes.empty()) return of_light;
     return fmt::format("strobe{} {} did not fire: {}",
                        marked.strobes.size() > 1 ? "s" : "",

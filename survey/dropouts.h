@@ -32,7 +32,7 @@
 // Not told: a strobe that gives little of the light in view, or whose light is a constant share of
 // the others'; a dim image where floors differ as much: only under 0.14 of the light where they
 // differ by 25 %, only under 0.77 where by 2 %. Under kEnoughToLearn images floors differ by
-// kFloorSpread at least. Without maps, light is 1 everywhere and the level alone is judged.
+// kFloorSpread at least; without a map, when the level is all there is, so few are not judged.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -73,6 +73,7 @@ struct LightCells {
     int side = 0;
     CellPlane signal{};
     CellPlane light{};                 // of all strobes
+    bool has_map = true;               // else the light is 1 everywhere
     std::vector<CellPlane> strobes{};  // of each alone; empty: not known
 };
 
@@ -109,7 +110,7 @@ struct MarkedImage {
     double share = 1.0;
     std::vector<std::string> strobes{};  // out; empty: all are dim
 };
-// "strobe fore did not fire: 0.74 of the survey's light"
+// "strobe fore did not fire: lit by 0.74 of the survey's light"
 [[nodiscard]] std::string words_of(const MarkedImage& marked);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<MarkedImage>& marked);
 

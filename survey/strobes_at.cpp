@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kCoarse_px = 4 * kCells;  // along the longer side
 constexpr double kCoarseError = 1e-3;
+constexpr double kCoarseVeil = 1e-2;
 
 // Maps of some strobes alone, made when the first image asks for them.
 struct LitMaps {
@@ -54,7 +55,7 @@ StrobesAt strobes_of_rig(const Rig& rig,
             part.rig,
             paths,
             LightmapOptions{
-                .error = kCoarseError, .has_veil = has_veil, .veil_tolerance = kCoarseError});
+                .error = kCoarseError, .has_veil = has_veil, .veil_tolerance = kCoarseVeil});
     }
     at.cells = [makers,
                 side = cells_across(rig.camera.width_px, rig.camera.height_px)](const Sled& sled) {

@@ -63,7 +63,7 @@ class Dark : public CommandTest {
         for (const char* dark : {"f03.tif", "f08.tif", "f09.tif"})
             EXPECT_TRUE(has(words, fmt::format("{}: without light: 0.015 of the survey's", dark)))
                 << words;
-        EXPECT_TRUE(has(words, "f06.tif: 0.5 of the survey's light")) << words;
+        EXPECT_TRUE(has(words, "f06.tif: lit by 0.5 of the survey's light")) << words;
     }
 };
 using CommandDropouts = Dark;
@@ -99,7 +99,8 @@ TEST_F(CommandDropouts, AreMarkedAndDoNotMoveTheGain) {
     ASSERT_EQ(json["dropouts"].size(), 1U);
     EXPECT_NEAR(json["dropouts"][0]["share"].get<double>(), 0.5, kUnmoved);
     // Done again, it is known from before.
-    EXPECT_TRUE(has(done(correct + Arguments("-o out"), "9 kept", 1).err, "f06.tif: 0.5 of the"));
+    EXPECT_TRUE(
+        has(done(correct + Arguments("-o out"), "9 kept", 1).err, "f06.tif: lit by 0.5 of the"));
     // By the light that was on.
     done(correct + Arguments("-o lit --dropouts correct"), "", 1);
     EXPECT_NEAR(mean_of("lit/f06.exr"), 0.2, 0.2 * kUnmoved);

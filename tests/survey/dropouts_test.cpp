@@ -149,6 +149,13 @@ TEST(Dropouts, OfThreeImagesTheLevelTellsOnlyWhatIsWithoutLight) {
     EXPECT_TRUE(judged(images[3], scales).is_dark);
 }
 
+TEST(Dropouts, FewImagesWithoutAMapAreNotJudged) {
+    std::vector<LightCells> images = even_images(1e-3);
+    for (LightCells& image : images) image.has_map = false;
+    EXPECT_EQ(learned(std::span(images).last(7)).images, 0U);
+    EXPECT_GT(learned(std::span(images).last(8)).images, 0U);
+}
+
 TEST(Dropouts, WhereMostImagesAreDarkTheLitAreTheSurvey) {
     std::vector<LightCells> images = even_images(1e-3);
     for (std::size_t i = 2; i < 8; ++i) images.push_back(images[8]);
@@ -212,8 +219,8 @@ TEST(Dropouts, CellsAreMeansOfGreen) {
 
 TEST(Dropouts, WordsNameStrobesAndShare) {
     EXPECT_EQ(words_of(marked("a", {"fore", "aft"}, 0.74, 2)),
-              "strobe aft did not fire: 0.74 of the survey's light");
-    EXPECT_EQ(words_of(marked("a", {}, 0.5, 0)), "0.5 of the survey's light");
+              "strobe aft did not fire: lit by 0.74 of the survey's light");
+    EXPECT_EQ(words_of(marked("a", {}, 0.5, 0)), "lit by 0.5 of the survey's light");
 }
 
 }  // namespace
