@@ -4,6 +4,7 @@
 // which three are without light and one at half of it.
 #include "support/command_test.h"
 #include "support/exr_file.h"
+#include "support/scene_text.h"
 #include "support/tiff.h"
 
 #include <fmt/format.h>
@@ -118,6 +119,35 @@ TEST_F(CommandDropouts, AreNotLearnedFromByBaselines) {
     keep_good();
     done(baseline + Arguments("-o good"));
     EXPECT_NEAR(with_dark, mean_of("good/f00.exr"), kUnmoved * with_dark);
+}
+
+// By a rig. What an image without one strobe becomes by the light that was on is what it becomes
+// with all of them by all of it, for the floor is one.
+TEST_F(CommandDropouts, AStrobeOfARigIsNamedAndItsLightLeftOut) {
+    std::filesystem::copy(scene_file("survey/grey-card.csv"), path("grey-card.csv"));
+    write_file(path("rig.toml"),
+               with(scene_text("survey/smooth.toml"),
+                    {{"resolution", "[170, 128]"}, {"pixel_pitch_um", "51.6"}}));
+    const Arguments survey("survey rig.toml --images 12 --no-noise --electrons-per-signal 2000");
+    done(survey + Arguments("-o lit"));
+    done(survey + Arguments("--set strobe.port.power=0 -o unlit"));
+    std::filesystem::create_directories(path("mixed"));
+    for (const auto& image : std::filesystem::directory_iterator(path("lit/raw")))
+        std::filesystem::copy(image.path(), path("mixed") / image.path().filename());
+    std::filesystem::copy(path("unlit/raw/000005.tif"),
+                          path("mixed/000005.tif"),
+                          std::filesystem::copy_options::overwrite_existing);
+    const Arguments correct(
+        "--rig rig.toml --nav lit/navigation.txt --bayer RGGB --format exr "
+        "--black-level 64 --gain 0.0005 --dropouts correct");
+    EXPECT_EQ(done("correct lit/raw -o all" + correct).err, "");
+    const CommandResult run = done("correct mixed -o on" + correct);
+    EXPECT_TRUE(has(run.err, "000005.tif: strobe port did not fire: lit by 0.7")) << run.err;
+    EXPECT_EQ(json_in("on/correction.json")["dropouts"].size(), 1U);
+    const std::vector<float> all = read_exr(path("all/000005.exr"), {"G"});
+    const std::vector<float> on = read_exr(path("on/000005.exr"), {"G"});
+    constexpr double kNumbers = 0.02;  // both are rounded to numbers of some hundred
+    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_NEAR(on[i], all[i], kNumbers * all[i]) << i;
 }
 
 // Of exposures of 8, 4, 2 and 1 that nobody told, all images come out alike.
