@@ -146,7 +146,7 @@ TEST_F(CommandDropouts, AStrobeOfARigIsNamedAndItsLightLeftOut) {
     EXPECT_EQ(json_in("on/correction.json")["dropouts"].size(), 1U);
     const std::vector<float> all = read_exr(path("all/000005.exr"), {"G"});
     const std::vector<float> on = read_exr(path("on/000005.exr"), {"G"});
-    constexpr double kNumbers = 0.02;  // both are rounded to numbers of some hundred
+    constexpr double kNumbers = 0.05;  // both are rounded to numbers, some twenty in corners
     for (std::size_t i = 0; i < all.size(); ++i) ASSERT_NEAR(on[i], all[i], kNumbers * all[i]) << i;
 }
 
