@@ -87,6 +87,7 @@ void print_report(const CorrectionReport& report,
     for (const Skipped& one : run.skipped) {
         say("  skipped: {}: {}\n", one.image, one.why);
     }
+    for (const MarkedImage& one : run.marked) say("  {}: {}\n", one.image, words_of(one));
     print_navigation(survey);
 }
 
@@ -168,6 +169,8 @@ Task rig_task(const CorrectCommandOptions& options) {
         return light_of_rig(
             rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     });
+    survey.strobes = strobes_of_rig(
+        rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     survey.light.rig_size = own;
     expect_size_of(survey.light, survey.camera);
     const auto model = model_error_of(options, rig, survey);
@@ -274,7 +277,8 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
 }
 
 void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
-    add_camera_options(app, options.input);
+    add_camera_options(app, options.input, true, true);
+    add_dropouts(app, options.input, true);
     add_flag(app, "--keep-mosaic", options.correction.keep_mosaic);
     add_option(app, "--read-noise", options.correction.read_noise)->check(not_negative());
     add_option(app, "--electrons", options.electrons)->check(not_negative());
@@ -351,6 +355,7 @@ Action configure_baseline(CLI::App& app) {
     add_baseline_options(app, options->correction.of_baselines);
     add_survey_rig(app, options->input);
     add_camera_options(app, options->input);
+    add_dropouts(app, options->input, true);
     const Settle settle = add_format_options(app, options->correction.run.format);
     return configure_run(app, options, settle);
 }

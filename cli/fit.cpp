@@ -61,6 +61,7 @@ FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const R
     if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
     Survey survey = read_survey(options.input, options.folder, &rig);
     survey.navigation = read_navigation(options.input, survey.files, &rig);
+    survey.strobes = strobes_of_rig(rig, *survey.navigation, survey.files);
     return samples_of_images(
         survey, size, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
 }
@@ -77,6 +78,7 @@ constexpr std::array kOfImages{"--nav",
                                "--black-level",
                                "--white-level",
                                "--exposure",
+                               "--dropouts",
                                "--allow-skipped"};
 void require_use(const CLI::App& app) {
     for (const char* option : kOfImages) {
@@ -176,7 +178,8 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     const FitSamples samples = samples_for(options, rig, watch);
     const FitResult result = fit(text, samples, fit_options, watch);
     write_fitted_rig(text, result, options.folder);
-    const nlohmann::ordered_json json = to_json(result);
+    nlohmann::ordered_json json = to_json(result);
+    json["dropouts"] = to_json(samples.marked);
     write_text_file(options.folder / kFitNumbers, json_text(json));
     write_fit_page(options.folder / kFitPage, text, samples, result);
     if (options.input.json) {
@@ -207,6 +210,7 @@ Action configure_fit(CLI::App& app) {
     add_option(app, "--attitude-error", options->attitude_error_deg)->check(not_negative());
     add_option(app, "--blocks", options->blocks)->check(in_range(8, 1000));
     add_camera_options(app, options->input);
+    add_dropouts(app, options->input, false);
     add_jobs(app, options->fit.threads);
     add_outcome_options(app, options->input);
     return [&app, options] { return fit_survey(app, *options); };

@@ -46,6 +46,8 @@ void print_observation(const Observation& observation, const std::string& map_fi
     say("{} at other altitudes, {} skipped\n",
         counted(observation.outside, "image"),
         observation.skipped.size());
+    for (const MarkedImage& one : observation.marked)
+        say("left out: {}: {}\n", one.image, words_of(one));
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
@@ -86,6 +88,7 @@ Action configure_observe(CLI::App& app) {
     add_average_options(app, options->observation);
     add_survey_rig(app, options->input);
     add_camera_options(app, options->input, false);
+    add_dropouts(app, options->input, false);
     add_option(app, "--memory", options->observation.memory_mb)->check(positive());
     add_jobs(app, options->observation.jobs);
     add_outcome_options(app, options->input);

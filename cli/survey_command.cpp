@@ -173,16 +173,23 @@ void add_depth_options(CLI::App& app, SurveyInput& input) {
     for (CLI::Option* option : {unit, is, normals}) option->needs(maps);
 }
 
-void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white) {
+void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white, bool has_map) {
     CameraNumbers& camera = input.camera;
     add_read(app, "--bayer", camera.mosaic, read_by(mosaic_named, "RGGB, BGGR, GRBG, GBRG, mono"));
     add_crop_options(app, camera);
     add_option(app, "--black-level", camera.black_level);
-    static const std::map<std::string, ExposureBy> kWays{
+    std::map<std::string, ExposureBy> ways{
         {"none", ExposureBy::Nothing}, {"exif", ExposureBy::Exif}, {"flash", ExposureBy::Flash}};
-    add_option(app, "--exposure", camera.exposure_by)->transform(word_of(kWays));
+    if (has_map) ways["model"] = ExposureBy::Model;
+    add_option(app, "--exposure", camera.exposure_by)->transform(word_of(ways));
     if (!has_white) return;
     add_option(app, "--white-level", camera.white_level);
+}
+
+void add_dropouts(CLI::App& app, SurveyInput& input, bool corrects) {
+    std::map<std::string, Dropouts> words = kDropoutWords;
+    if (!corrects) words.erase(name_of(Dropouts::Correct));
+    add_option(app, "--dropouts", input.dropouts)->transform(word_of(words));
 }
 
 void add_outcome_options(CLI::App& app, SurveyInput& input) {
@@ -243,7 +250,9 @@ std::optional<Rig> rig_of(const SurveyInput& input) {
 }
 
 Survey read_survey(const SurveyInput& input, const std::filesystem::path& output, const Rig* rig) {
-    Survey survey{.files = image_files(input.images, output), .camera = input.camera};
+    Survey survey{.files = image_files(input.images, output),
+                  .camera = input.camera,
+                  .dropouts = input.dropouts};
     if (rig != nullptr) survey.camera = with_rig(survey.camera, rig->camera);
     survey.camera = with_reference(survey.camera, survey.files);
     // A crop that no image has is one mistake.
@@ -286,7 +295,8 @@ void print_camera(const Survey& survey) {
     }
     if (camera.black_level) words.push_back(fmt::format("black level {:g}", *camera.black_level));
     if (camera.white_level) words.push_back(fmt::format("white level {:g}", *camera.white_level));
-    if (camera.exposure_by != ExposureBy::Nothing)
+    if (camera.exposure_by == ExposureBy::Model) words.emplace_back("each image to its own level");
+    if (is_told_by_exif(camera.exposure_by))
         words.push_back("brought to " + words_of(camera.reference));
     if (!words.empty()) say("  camera: {}\n", fmt::join(words, ", "));
 }
@@ -311,6 +321,11 @@ RunWatch terminal_watch(bool strict) {
                 [line](const Skipped& one) {
                     line->wipe();
                     warn("{}: {}; skipped", one.image, one.why);
+                },
+            .marked =
+                [line](const MarkedImage& one) {
+                    line->wipe();
+                    warn("{}: {}", one.image, words_of(one));
                 },
             .looks_wrong =
                 [line, strict](const std::vector<Suspicion>& found) {

@@ -38,6 +38,7 @@ struct SurveyInput {
     NavigationOptions navigation;
     DepthMaps depth{};  // without a place: none
     CameraNumbers camera;
+    Dropouts dropouts = Dropouts::Mark;
     bool strict = false;
     AllowedSkips allowed_skips;
     bool json = false;
@@ -51,7 +52,13 @@ CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
 // --depth-map and all that says how it is to be understood.
 void add_depth_options(CLI::App& app, SurveyInput& input);
 // --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
-void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white = true);
+// has_map: an image's exposure can be told by what it is divided by.
+void add_camera_options(CLI::App& app,
+                        SurveyInput& input,
+                        bool has_white = true,
+                        bool has_map = false);
+// --dropouts. corrects: by the light that was on.
+void add_dropouts(CLI::App& app, SurveyInput& input, bool corrects);
 // --strict, --allow-skipped, --json
 void add_outcome_options(CLI::App& app, SurveyInput& input);
 // --mask, --format, --compression, and how to encode images to look at. Once parsed, the format has
@@ -77,7 +84,7 @@ using Settle = std::function<void()>;
                                          const Rig* rig);
 
 // A line of progress, a warning of what looks wrong, or when strict an InputError, and each image
-// that is skipped.
+// that is skipped, or that not all strobes lit.
 [[nodiscard]] RunWatch terminal_watch(bool strict);
 
 // "camera: RGGB, black level 64, white level 4095", "navigation: ..."; nothing where there is

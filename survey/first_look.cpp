@@ -7,12 +7,14 @@
 #include "image/any_image.h"
 #include "image/image_size.h"
 #include "image/raw_file.h"
+#include "survey/dropout_check.h"
 #include "survey/image_light.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <mutex>
@@ -60,6 +62,13 @@ bool says_srgb(const std::filesystem::path& file) {
     }
 }
 
+// In a unit that is the same for files that tell of the same numbers; none where there is none.
+std::optional<double> exposure_told(const ShotExposure& shot) {
+    if (!shot.time_s && !shot.iso && !shot.f_number) return std::nullopt;
+    const double stop = shot.f_number.value_or(1.0);
+    return shot.time_s.value_or(1.0) * shot.iso.value_or(1.0) / (stop * stop);
+}
+
 ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
     ImageLook look;
     look.name = file.name.string();
@@ -70,6 +79,7 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     look.white = taken.levels.white;
     look.mosaic = shifted(taken.raw.mosaic, taken.crop.left_px, taken.crop.top_px);
     if (is_bayer(look.mosaic)) look.sites = sites_of_file(taken);
+    look.cells = light_cells(taken, survey, file);
     if (!has_light) return look;
     require_light_for(taken.raw, survey.light);
     const Lightmap map = as_signal(light_of(survey, file, 0).map);
@@ -88,11 +98,33 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     look.map_mean = means_of(map);
     look.frame = frame_look(taken.raw, taken.levels, map);
     look.says_srgb = says_srgb(file.source);
+    if (taken.tags) look.told = exposure_told(exposure_of(*taken.tags));
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(*sled) : std::nullopt) {
         look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));
     }
     return look;
+}
+
+// Learns how the images differ, and leaves out those that lack light; of those with an exposure
+// each, brings what is left to one.
+void judge_looks(const Survey& survey, SurveyLook& look) {
+    const bool has_levels = survey.camera.exposure_by == ExposureBy::Model;
+    if (survey.dropouts == Dropouts::Ignore && !has_levels) return;
+    std::vector<LightCells> cells;
+    for (const ImageLook& one : look.images) cells.push_back(one.cells);
+    look.scales = learned(cells, has_levels);
+    look.doubt = doubt_of_rig(cells, survey, look.scales);
+    std::vector<ImageLook> lit;
+    for (ImageLook& one : look.images) {
+        const Dropout found = judged(one.cells, look.scales);
+        if (found.is_any() && survey.dropouts != Dropouts::Ignore) continue;
+        one.level = found.level;
+        if (has_levels)
+            for (double& quotient : one.quotient) quotient /= std::exp(found.level);
+        lit.push_back(std::move(one));
+    }
+    look.images = std::move(lit);
 }
 
 // Which files, in their order, and whether the gain is taken from them.
@@ -145,6 +177,7 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
                 fmt::format("{}: {}", survey.files[choices[i].file].name.string(), whys[i]);
         }
     }
+    judge_looks(survey, result);
     return result;
 }
 
@@ -167,11 +200,13 @@ std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                      const CameraNumbers& camera,
                                      const std::optional<Navigation>& navigation,
                                      std::size_t jobs,
-                                     const RunWatch& watch) {
+                                     const RunWatch& watch,
+                                     DropoutScales* scales) {
     const SurveyLook look = look_at({.files = files, .camera = camera}, {.jobs = jobs}, watch);
     if (look.images.empty() && look.count > 0) {
         throw InputError("{}", look.none_can_be("read"));
     }
+    if (scales != nullptr) *scales = look.scales;
     std::vector<Suspicion> found = suspicions_of(navigation);
     std::ranges::move(suspicions(look.images, mosaic_of(look.images)), std::back_inserter(found));
     watch.looks_wrong(found);

@@ -10,6 +10,7 @@
 #include "survey/survey_check.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,9 +26,11 @@ struct LookRequest {
 };
 
 struct SurveyLook {
-    std::vector<ImageLook> images{};  // those that can be used
-    std::size_t count = 0;            // that were looked at
-    std::string first_why{};          // why the first of the others cannot, and which; or empty
+    std::vector<ImageLook> images{};   // those that can be used
+    std::size_t count = 0;             // that were looked at
+    DropoutScales scales{};            // of which images that lack light were told, and left out
+    std::optional<Suspicion> doubt{};  // of the rig, for what its strobes seem to do
+    std::string first_why{};           // why the first of the others cannot, and which; or empty
 
     // Where there are none: what cannot be done to them, "read", and why.
     [[nodiscard]] std::string none_can_be(std::string_view done) const;
@@ -46,6 +49,7 @@ struct SurveyLook {
                                                    const CameraNumbers& camera,
                                                    const std::optional<Navigation>& navigation,
                                                    std::size_t jobs,
-                                                   const RunWatch& watch);
+                                                   const RunWatch& watch,
+                                                   DropoutScales* scales = nullptr);
 
 }  // namespace aphotic

@@ -56,20 +56,27 @@ std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file) {
     }
 }
 
-ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px) {
+ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px, std::uint64_t out) {
     const std::optional<Sled> sled = sled_of(survey, file);
     if (!survey.depth) {
-        return {.map = survey.light.map(*sled),
+        return {.map = out == 0 ? survey.light.map(*sled) : survey.strobes.map_without(*sled, out),
                 .edges = survey.light.edges(*sled, within_px),
                 .filled = {}};
     }
     const DepthMaps& maps = *survey.depth;
+    const auto maker = out == 0 ? survey.light.relief : survey.strobes.relief_without(out);
     FloorRelief relief =
-        floor_relief(depth_map_of(survey, file), maps.is, maps.normals, *survey.light.relief, sled);
-    ReliefMap made = survey.light.relief->map(relief.relief, within_px);
+        floor_relief(depth_map_of(survey, file), maps.is, maps.normals, *maker, sled);
+    ReliefMap made = maker->map(relief.relief, within_px);
     return {.map = std::move(made.map),
             .edges = std::move(made.edges),
             .filled = std::move(relief.filled)};
+}
+
+std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file) {
+    const std::optional<Sled> sled = sled_of(survey, file);
+    if (!survey.depth) return survey.strobes.cells(*sled);
+    return survey.strobes.relief_cells(depth_map_of(survey, file), *survey.depth, sled);
 }
 
 std::string light_inputs(const Survey& survey, const ImageFile& file) {

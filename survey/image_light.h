@@ -20,7 +20,14 @@ struct ImageLight {
 };
 
 // An InputError of this one image where its pose or its depth map is missing or cannot be.
-[[nodiscard]] ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px);
+// out: strobes that did not fire, by their bits.
+[[nodiscard]] ImageLight light_of(const Survey& survey,
+                                  const ImageFile& file,
+                                  int within_px,
+                                  std::uint64_t out = 0);
+
+// In cells, by strobe: of a survey that knows its light strobe by strobe.
+[[nodiscard]] std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file);
 
 // Its pose; none where depth maps do without.
 [[nodiscard]] std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file);

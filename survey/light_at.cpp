@@ -24,10 +24,6 @@ struct RigLight {
     LightmapMaker maker;
 };
 
-PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
-    return sleds.empty() ? PathRange{} : paths_of(rig, corners_of(sleds));
-}
-
 using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;
 
 MapAsRadians map_as_radians(const Rig& rig,
@@ -129,12 +125,8 @@ struct GivenBack {
 
 }  // namespace
 
-LightAt light_of_rig(const Rig& rig,
-                     const std::optional<Navigation>& navigation,
-                     const std::vector<ImageFile>& files,
-                     bool has_veil,
-                     double veil_tolerance,
-                     bool has_relief) {
+std::vector<Sled> sleds_of(const std::optional<Navigation>& navigation,
+                           const std::vector<ImageFile>& files) {
     std::vector<Sled> sleds;
     for (const ImageFile& file : files) {
         if (!navigation) break;
@@ -144,6 +136,20 @@ LightAt light_of_rig(const Rig& rig,
             // It is said of the image when its turn comes.
         }
     }
+    return sleds;
+}
+
+PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
+    return sleds.empty() ? PathRange{} : paths_of(rig, corners_of(sleds));
+}
+
+LightAt light_of_rig(const Rig& rig,
+                     const std::optional<Navigation>& navigation,
+                     const std::vector<ImageFile>& files,
+                     bool has_veil,
+                     double veil_tolerance,
+                     bool has_relief) {
+    const std::vector<Sled> sleds = sleds_of(navigation, files);
     const LightmapOptions options{.has_veil = has_veil, .veil_tolerance = veil_tolerance};
     const bool scatters = rig.water.scatters();
     const auto light = std::make_shared<const RigLight>(

@@ -53,8 +53,13 @@ struct LightAt {
 // are.
 inline constexpr double kVeilOfCorrection = 1e-3;
 
-// For the poses of these images: those that have none are passed over here, as without a
-// navigation all have.
+// The poses of these images: those that have none are passed over here, as without a navigation all
+// have; and the paths that they see, which maps are to serve.
+[[nodiscard]] std::vector<Sled> sleds_of(const std::optional<Navigation>& navigation,
+                                         const std::vector<ImageFile>& files);
+[[nodiscard]] PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds);
+
+// For the poses of these images.
 [[nodiscard]] LightAt light_of_rig(const Rig& rig,
                                    const std::optional<Navigation>& navigation,
                                    const std::vector<ImageFile>& files,

@@ -27,6 +27,8 @@ struct RunWatch {
     // share: of this part of the work, 0 to 1; it falls where another part begins.
     std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
     std::function<void(const Skipped& one)> skipped = [](const auto&) {};
+    // Less than all strobes lit it.
+    std::function<void(const MarkedImage& one)> marked = [](const auto&) {};
     // Before anything is written, also when nothing looks wrong. What it throws ends the run.
     std::function<void(const std::vector<Suspicion>& found)> looks_wrong = [](const auto&) {};
 };

@@ -8,6 +8,7 @@
 #include "survey/light_at.h"
 #include "survey/navigation/navigation.h"
 #include "survey/relief/floor_relief.h"
+#include "survey/strobes_at.h"
 
 #include <optional>
 #include <vector>
@@ -20,6 +21,8 @@ struct Survey {
     std::optional<DepthMaps> depth{};        // none: the floor is the navigation's plane
     LightAt light{};                         // without maps, as by default, it is not known
     CameraNumbers camera;
+    StrobesAt strobes{};  // none, as by default: the light is not known strobe by strobe
+    Dropouts dropouts = Dropouts::Mark;
 
     // An InputError when the navigation has no pose for it.
     [[nodiscard]] Sled sled_of(const ImageFile& file) const {

@@ -726,6 +726,25 @@ nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions) {
     return json;
 }
 
+std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks) {
+    constexpr double kOff = 0.2;
+    std::vector<double> told;
+    std::vector<double> levels;
+    for (const ImageLook& look : looks) {
+        if (!look.told || !(*look.told > 0.0)) continue;
+        told.push_back(std::log(*look.told));
+        levels.push_back(look.level);
+    }
+    const Line line = line_through(told, levels);
+    if (std::abs(line.slope - 1.0) < std::max(kOff, kStandardErrors * line.error))
+        return std::nullopt;
+    return Suspicion{.about = "exposure",
+                     .what = fmt::format("Exif tells exposures that vary {:.3g}-fold, where the "
+                                         "images' own levels go as their power {:.2g}, expected 1",
+                                         fold_of(told),
+                                         line.slope)};
+}
+
 std::string not_checked(std::span<const ImageLook> looks) {
     const std::vector<ImageLook> lit_looks = lit(looks);
     if (!has_altitudes(lit_looks)) return {};

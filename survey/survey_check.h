@@ -47,6 +47,7 @@
 #pragma once
 
 #include "survey/correction.h"
+#include "survey/dropouts.h"
 #include "survey/images/raw_image.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -108,7 +109,10 @@ struct ImageLook {
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
     FrameLook frame;
-    bool says_srgb = false;  // its file
+    bool says_srgb = false;      // its file
+    LightCells cells{};          // what strobes lit it; where that is judged
+    double level = 0.0;          // its own, over the survey's, where images have an exposure each
+    std::optional<double> told;  // its exposure, by its Exif, in a unit of the survey's own
     // Of images with a depth map: its median along the axis, and how like the image is to the map
     // of light by the other convention, and to that on the navigation's plane.
     std::optional<double> depth_m{};
@@ -132,7 +136,7 @@ inline constexpr std::string_view kAboutNavigation = "navigation";
 
 struct Suspicion {
     // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map",
-    // "attitude", "navigation", "depth"
+    // "attitude", "navigation", "exposure", "strobes", "depth"
     std::string about;
     std::string what;  // with the number that shows it
 };
@@ -147,6 +151,9 @@ struct Suspicion {
 [[nodiscard]] std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks);
 [[nodiscard]] std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks,
                                                     Mosaic mosaic);
+
+// Of images with a level each: where their Exif tells other exposures.
+[[nodiscard]] std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks);
 
 // What no line through images with altitudes can tell of these, and why; or empty.
 [[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/in_order.h"
+#include "survey/dropout_check.h"
 #include "survey/first_look.h"
 
 #include <fmt/format.h>
@@ -23,7 +24,10 @@ namespace {
 class BaselineRun : public Corrector {
   public:
     BaselineRun(const Survey& survey, const CorrectionOptions& options)
-        : survey_(survey), options_(options), method_(*options.baseline, options.of_baselines) {}
+        : survey_(survey),
+          options_(options),
+          method_(*options.baseline, options.of_baselines),
+          level_alone_{.files = {}, .camera = survey.camera, .dropouts = survey.dropouts} {}
 
     // Of all baselines, also what this one does not use.
     [[nodiscard]] Json settings() const override {
@@ -34,7 +38,8 @@ class BaselineRun : public Corrector {
                 {"tiles", own.tiles},
                 {"clip", own.clip},
                 {"order", own.order},
-                {"bin_m", own.bin_m}};
+                {"bin_m", own.bin_m},
+                {"dropouts", name_of(survey_.dropouts)}};
     }
 
     // A folder keeps its balance, so that images that come later fit the others.
@@ -42,7 +47,7 @@ class BaselineRun : public Corrector {
               const RunWatch& watch,
               CorrectionReport& report) override {
         report.looks_wrong = suspicions_of(
-            survey_.files, survey_.camera, survey_.navigation, options_.run.jobs, watch);
+            survey_.files, survey_.camera, survey_.navigation, options_.run.jobs, watch, &scales_);
         const auto& format = options_.run.format.srgb;
         if (!format) return;
         const auto kept = kept_balance(earlier, report.settings);
@@ -75,6 +80,10 @@ class BaselineRun : public Corrector {
                   method_.passes() == 1 ? "learning" : fmt::format("learning, pass {}", pass));
             method_.end_pass(options_.run.jobs);
         }
+    }
+
+    void judge(SurveyImage& taken, const ImageFile& file) const override {
+        aphotic::judge(taken, level_alone_, file, scales_);
     }
 
     [[nodiscard]] CorrectedImage correct(SurveyImage& taken, const ImageFile& file) const override {
@@ -115,17 +124,20 @@ class BaselineRun : public Corrector {
             static_cast<int>(options_.run.jobs),
             [&](std::size_t i) {
                 SurveyImage taken = read_survey_image(survey_.files[i].source, survey_.camera);
+                judge(taken, survey_.files[i]);
                 leave_light(taken);
-                return std::move(taken.raw);
+                return taken;
             },
-            [&](std::size_t i, const RawImage& image) {
+            [&](std::size_t i, const SurveyImage& taken) {
+                const RawImage& image = taken.raw;
                 if (first_.width_px == 0) {
                     first_ = {.width_px = image.width_px,
                               .height_px = image.height_px,
                               .mosaic = image.mosaic};
                 }
                 require_like(image, first_, "as the first image");
-                method_.learn(image, altitude_m(survey_.files[i]));
+                const double height_m = altitude_m(survey_.files[i]);
+                if (taken.light_share == 1.0) method_.learn(image, height_m);
                 watch.progress(what, static_cast<double>(i + 1) / static_cast<double>(count));
             },
             [&](std::size_t i, const std::string& why) {
@@ -148,6 +160,8 @@ class BaselineRun : public Corrector {
     const Survey& survey_;
     const CorrectionOptions& options_;
     BaselineCorrector method_;
+    Survey level_alone_;
+    DropoutScales scales_;
     PerChannel balance_{};
     RawImage first_;                               // learned; its samples aside
     std::map<fs::path, std::string> not_learned_;  // by the image's name, and why

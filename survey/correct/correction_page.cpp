@@ -186,17 +186,25 @@ PageList doubts(const RunOutcome& run) {
     return items;
 }
 
-std::vector<PagePart> skipped(const RunOutcome& run) {
+std::string why_of(const Skipped& one) {
+    return one.why;
+}
+std::string why_of(const MarkedImage& one) {
+    return words_of(one);
+}
+
+template <typename Image>
+std::vector<PagePart> named(const std::vector<Image>& images) {
     constexpr std::size_t kMostRows = 200;
-    if (run.skipped.empty()) return {};
+    if (images.empty()) return {};
     PageList items;
-    for (std::size_t i = 0; i < std::min(run.skipped.size(), kMostRows); ++i)
-        items.emplace_back(run.skipped[i].image, run.skipped[i].why);
+    for (std::size_t i = 0; i < std::min(images.size(), kMostRows); ++i)
+        items.emplace_back(images[i].image, why_of(images[i]));
     std::vector<PagePart> parts{std::move(items)};
-    if (run.skipped.size() > kMostRows) {
+    if (images.size() > kMostRows) {
         parts.emplace_back(fmt::format("The first {} of {}; {} has all.",
                                        kMostRows,
-                                       grouped(run.skipped.size()),
+                                       grouped(images.size()),
                                        kCorrectionNotes));
     }
     return parts;
@@ -236,7 +244,8 @@ std::string correction_html(const Survey& survey,
               .parts = light_over_altitude(report.looks)},
              {.id = "gain", .heading = "Gain", .parts = {gains(report)}},
              {.id = "doubts", .heading = "Doubtful pixels", .parts = {doubts(run)}},
-             {.id = "skipped", .heading = "Skipped images", .parts = skipped(run)},
+             {.id = "skipped", .heading = "Skipped images", .parts = named(run.skipped)},
+             {.id = "dropouts", .heading = "Not lit by all strobes", .parts = named(run.marked)},
              {.id = "rig", .heading = "Rig", .parts = rig(survey.light)}}});
 }
 

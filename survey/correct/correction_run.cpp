@@ -43,6 +43,7 @@ Counts correct_image(const Survey& survey,
                      const ImageFile& file) {
     const ImageRunOptions& run = options.run;
     SurveyImage taken = read_survey_image(file.source, survey.camera);
+    corrector.judge(taken, file);
     CorrectedImage result = corrector.correct(taken, file);
     if (report.srgb) write_srgb(run.folder, file, result, taken, *report.srgb, *run.format.srgb);
     const float white = run.format.clips() ? corrector.white_of(taken) : 1.0F;
@@ -52,8 +53,14 @@ Counts correct_image(const Survey& survey,
     const auto pixels = static_cast<double>(result.doubts.size());
     ExrAttributes more;
     if (!report.baseline.empty()) more = {{"aphotic:baseline", std::string(report.baseline)}};
+    if (taken.light_share < 1.0)
+        more.emplace_back("aphotic:light_share", fmt::format("{:.4g}", taken.light_share));
     Counts counts = write_results(run.folder, file, std::move(result), taken, run.format, more);
     if (survey.camera.exposure_by != ExposureBy::Nothing) counts[kExposure] = taken.exposure;
+    if (taken.light_share < 1.0) {
+        counts[kLightShare] = taken.light_share;
+        counts[kStrobesOut] = static_cast<double>(taken.strobes_out);
+    }
     counts[kPixels] = pixels;
     return counts;
 }
@@ -117,7 +124,8 @@ CorrectionReport correct_survey(const Survey& survey,
         .make =
             [&](const ImageFile& file) {
                 return correct_image(survey, options, report, *corrector, file);
-            }};
+            },
+        .strobes = survey.strobes.names};
     report.run = run_images(share_of(survey.files, options.share), options.run, work, watch);
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "base/parallel.h"
 #include "base/upper_median.h"
+#include "survey/dropout_check.h"
 #include "survey/image_light.h"
 
 #include <fmt/format.h>
@@ -265,6 +266,7 @@ class ModelCorrector : public Corrector {
                   {"read_noise", nullptr},
                   {"electrons", options_.limit.electrons_per_number},
                   {"edge_px", options_.edge_px},
+                  {"dropouts", name_of(survey_.dropouts)},
                   {"rig_scale", nullptr}};
         if (given_)
             json["gain"] = given_->gain;
@@ -297,6 +299,12 @@ class ModelCorrector : public Corrector {
         std::ranges::move(
             suspicions(look.images, mosaic_of(look.images), survey_.light.rig_altitude_m),
             std::back_inserter(report.looks_wrong));
+        if (look.doubt) report.looks_wrong.push_back(*look.doubt);
+        if (survey_.camera.exposure_by == ExposureBy::Model) {
+            if (const auto doubt = exposure_doubt(look.images))
+                report.looks_wrong.push_back(*doubt);
+        }
+        scales_ = look.scales;
         report.not_checked = not_checked(look.images);
         report.looks = look.images;
         watch.looks_wrong(report.looks_wrong);
@@ -313,9 +321,15 @@ class ModelCorrector : public Corrector {
         return light_inputs(survey_, file);
     }
 
-    [[nodiscard]] CorrectedImage correct(SurveyImage& taken, const ImageFile& file) const override {
+    void judge(SurveyImage& taken, const ImageFile& file) const override {
         require_light_for(taken.raw, survey_.light);
-        const ImageLight light = light_of(survey_, file, options_.edge_px);
+        aphotic::judge(taken, survey_, file, scales_);
+    }
+
+    [[nodiscard]] CorrectedImage correct(SurveyImage& taken, const ImageFile& file) const override {
+        const bool is_wanted = survey_.dropouts == Dropouts::Correct;
+        const ImageLight light = light_of(
+            survey_, file, options_.edge_px, is_wanted ? taken.strobes_out : std::uint64_t{0});
         NoiseLimit limit = options_.limit;
         limit.read_noise = options_.read_noise.value_or(taken.rounding);
         if (!is_middle_known(options_, gain_)) limit = {.share = options_.limit.share};
@@ -338,6 +352,7 @@ class ModelCorrector : public Corrector {
     std::vector<Suspicion> doubts_;  // about what is given
     std::optional<SurveyGain> given_;
     SurveyGain gain_;
+    DropoutScales scales_;
 };
 
 }  // namespace

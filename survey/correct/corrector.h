@@ -139,7 +139,11 @@ class Corrector {
     // Before the first image that is to be corrected, if there is one.
     virtual void learn(const RunWatch& /*watch*/) {}
 
-    // Takes the raw image. Called by several threads; an InputError is of this one image.
+    // Whether the strobes fired (survey/dropout_check.h): noted in the image. An InputError of one
+    // without light.
+    virtual void judge(SurveyImage& taken, const ImageFile& file) const = 0;
+
+    // Takes the raw image, judged. Called by several threads; an InputError is of this one image.
     [[nodiscard]] virtual CorrectedImage correct(SurveyImage& taken,
                                                  const ImageFile& file) const = 0;
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/sha256.h"
+#include "survey/dropout_check.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -125,7 +126,8 @@ double RunOutcome::doubtful_share(std::string_view doubt) const {
 nlohmann::ordered_json to_json(const RunOutcome& outcome) {
     nlohmann::ordered_json json{{"corrected", outcome.corrected},
                                 {"kept", outcome.kept},
-                                {"skipped", to_json(outcome.skipped)}};
+                                {"skipped", to_json(outcome.skipped)},
+                                {"dropouts", to_json(outcome.marked)}};
     for (const auto& [name, bit] : kDoubts) {
         json["doubtful"][std::string(name)] = outcome.doubtful_share(name);
     }
@@ -191,9 +193,14 @@ RunOutcome run_images(const std::vector<ImageFile>& files,
             outcome.skipped.push_back({files[i].source.string(), whys[i]});
             continue;
         }
-        for (const auto& [what, number] : journal.counts(files[i].name.string())) {
-            outcome.counts[what] += number;
-        }
+        const Counts counts = journal.counts(files[i].name.string());
+        for (const auto& [what, number] : counts) outcome.counts[what] += number;
+        if (!counts.contains(kLightShare)) continue;
+        outcome.marked.push_back(marked(files[i].source.string(),
+                                        work.strobes,
+                                        counts.at(kLightShare),
+                                        static_cast<std::uint64_t>(counts.at(kStrobesOut))));
+        watch.marked(outcome.marked.back());
     }
     outcome.pixels = outcome.counts[kPixels];
     return outcome;

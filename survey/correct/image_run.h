@@ -53,14 +53,16 @@ struct ImageWork {
     std::function<void()> prepare = [] {};
     // Reads the image and writes its results; what it counted is noted. Called by several threads.
     std::function<Counts(const ImageFile& file)> make;
+    std::vector<std::string> strobes{};  // by whose names dropouts are told
 };
 
 struct RunOutcome {
     std::size_t corrected = 0;
     std::size_t kept = 0;
-    std::vector<Skipped> skipped;  // in the order of the images
-    Counts counts;                 // of all that are done
-    double pixels = 0.0;           // of these
+    std::vector<Skipped> skipped;     // in the order of the images
+    std::vector<MarkedImage> marked;  // in the order of the images
+    Counts counts;                    // of all that are done
+    double pixels = 0.0;              // of these
 
     [[nodiscard]] double doubtful_share(std::string_view doubt) const;
 };
@@ -68,6 +70,11 @@ struct RunOutcome {
 
 // Of one image, noted with what was counted in it: times that of the reference.
 inline constexpr const char* kExposure = "relative_exposure";
+
+// And of one that less than all strobes lit: the share of the light, and bits of those that were
+// out.
+inline constexpr const char* kLightShare = "light_share";
+inline constexpr const char* kStrobesOut = "strobes_out";
 
 // pixels: the sum of what was counted under kPixels.
 inline constexpr const char* kPixels = "pixels";

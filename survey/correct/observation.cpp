@@ -5,6 +5,7 @@
 #include "base/in_order.h"
 #include "base/offered.h"
 #include "image/exr.h"
+#include "survey/dropout_check.h"
 #include "survey/first_look.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,13 @@ struct ChosenImage {
     ImageFile file;
     Sled sled;
     bool is_bad = false;
+    LightCells cells{};  // of the first pass
+};
+
+// As it is averaged, and its cells before it is.
+struct ReadImage {
+    RawImage raw;
+    LightCells cells;
 };
 
 // The images at the altitude, and what became of the others.
@@ -73,7 +81,8 @@ struct Pass {
             images.size(),
             static_cast<int>(options.jobs),
             [&](std::size_t i) { return read(images[i].file); },
-            [&](std::size_t i, const RawImage& image) {
+            [&](std::size_t i, const ReadImage& read) {
+                const RawImage& image = read.raw;
                 if (like.width_px == 0) {
                     like = {.width_px = image.width_px,
                             .height_px = image.height_px,
@@ -81,6 +90,7 @@ struct Pass {
                 }
                 require_like(image, like, "as the first image");
                 use(image);
+                images[i].cells = read.cells;
                 const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
                 watch.progress("averaging", from + (to - from) * done);
             },
@@ -91,25 +101,51 @@ struct Pass {
         std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
     }
 
-    [[nodiscard]] RawImage read(const ImageFile& file) const {
+    [[nodiscard]] ReadImage read(const ImageFile& file) const {
         SurveyImage taken = read_survey_image(file.source, camera);
+        LightCells cells = light_cells(taken, {}, file);
         take_off_black(taken);
         if (std::ranges::any_of(taken.raw.samples, [](float s) { return std::isinf(s); }))
             throw InputError("a sample is infinite");
         if (options.normalise) divide_by_own_mean(taken.raw);
-        return std::move(taken.raw);
+        return {.raw = std::move(taken.raw), .cells = std::move(cells)};
     }
 };
 
-Observed running_mean(Pass& pass) {
+// Those of less light than the others, by their level, after a pass has read all: how many.
+std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& observation) {
+    if (survey.dropouts == Dropouts::Ignore) return 0;
+    std::vector<LightCells> cells;
+    for (const ChosenImage& image : selection.images) cells.push_back(image.cells);
+    const DropoutScales scales = learned(cells);
+    return std::erase_if(selection.images, [&](const ChosenImage& image) {
+        const Dropout found = judged(image.cells, scales);
+        const std::string name = image.file.source.string();
+        if (found.is_dark) {
+            selection.skipped.push_back({.image = name, .why = why_dark(found)});
+        } else if (found.is_any()) {
+            observation.marked.push_back({.image = name, .share = found.share});
+        }
+        return found.is_any();
+    });
+}
+
+// Once more where a first pass finds images that do not count.
+template <typename Drop>
+Observed running_mean(Pass& pass, const Drop& drop) {
     std::optional<RunningMean> mean;
-    pass.run(
-        [&](const RawImage& image) {
-            if (!mean) mean.emplace(image.samples.size());
-            mean->add(image.samples);
-        },
-        0.0,
-        1.0);
+    const auto run = [&] {
+        mean.reset();
+        pass.run(
+            [&](const RawImage& image) {
+                if (!mean) mean.emplace(image.samples.size());
+                mean->add(image.samples);
+            },
+            0.0,
+            1.0);
+    };
+    run();
+    if (drop() > 0) run();
     return mean ? mean->observed() : Observed{};
 }
 
@@ -118,10 +154,15 @@ void append(std::vector<float>& to, const std::vector<float>& from) {
 }
 
 // A first pass finds which images can be used at all.
-Observed average_by_bands(Pass& pass, Selection& selection, const ObservationOptions& options) {
+template <typename Drop>
+Observed average_by_bands(Pass& pass,
+                          Selection& selection,
+                          const ObservationOptions& options,
+                          const Drop& drop) {
     constexpr double kFirstPass = 0.1;
     std::size_t samples = 0;
     pass.run([&](const RawImage& image) { samples = image.samples.size(); }, 0.0, kFirstPass);
+    drop();
     const std::size_t band = samples_in_memory(selection.images.size(), options.memory_mb);
     const auto share = [&](std::size_t at) {
         return kFirstPass +
@@ -227,10 +268,12 @@ Observation observe(const Survey& survey,
     observation.looks_wrong =
         suspicions_of(files, survey.camera, survey.navigation, options.jobs, watch);
     Pass pass{survey.camera, options, watch, selection};
+    const auto drop = [&] { return drop_unlit(survey, selection, observation); };
     const Observed observed = options.average == Average::Mean
-                                  ? running_mean(pass)
-                                  : average_by_bands(pass, selection, options);
+                                  ? running_mean(pass, drop)
+                                  : average_by_bands(pass, selection, options, drop);
     for (const Skipped& one : selection.skipped) watch.skipped(one);
+    for (const MarkedImage& one : observation.marked) watch.marked(one);
     require_images(selection, options);
     observation.width_px = pass.like.width_px;
     observation.height_px = pass.like.height_px;
@@ -254,6 +297,7 @@ nlohmann::ordered_json to_json(const Observation& observation,
             {"roll_deg", degrees(observation.sled.roll_rad)},
             {"relative_error", observation.relative_error},
             {"skipped", to_json(observation.skipped)},
+            {"dropouts", to_json(observation.marked)},
             {"looks_wrong", to_json(observation.looks_wrong)}};
 }
 

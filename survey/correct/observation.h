@@ -51,7 +51,8 @@ struct Observation {
     Sled sled;                // the mean; an angle that the navigation does not tell is NaN
     // The root mean square of the standard errors over the mean of the map: what noise is left.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Skipped> skipped;
+    std::vector<Skipped> skipped;       // those without light among them
+    std::vector<MarkedImage> marked{};  // of less light than the others, left out
     std::vector<Suspicion> looks_wrong;
 };
 

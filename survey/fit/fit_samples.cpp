@@ -6,6 +6,7 @@
 #include "base/in_order.h"
 #include "base/number.h"
 #include "image/exr.h"
+#include "survey/dropout_check.h"
 #include "survey/first_look.h"
 #include "survey/images/survey_image.h"
 
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -159,6 +161,35 @@ FitPlaces places_of(int width_px, int height_px, int block_px) {
     return places;
 }
 
+// Leaves out what not all strobes lit. files: by image, of the survey's.
+void leave_lit(const Survey& survey,
+               const std::vector<LightCells>& cells,
+               const std::vector<std::size_t>& files,
+               FitSamples& samples,
+               const RunWatch& watch) {
+    if (survey.dropouts == Dropouts::Ignore) return;
+    DropoutScales scales = learned(cells);
+    if (const auto doubt = doubt_of_rig(cells, survey, scales)) {
+        watch.looks_wrong({*doubt});
+        samples.looks_wrong.push_back(*doubt);
+    }
+    std::vector<FitImage> lit;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const Dropout found = judged(cells[i], scales);
+        const std::string name = survey.files[files[i]].source.string();
+        if (found.is_dark) {
+            samples.skipped.push_back({.image = name, .why = why_dark(found)});
+            watch.skipped(samples.skipped.back());
+        } else if (found.is_any()) {
+            samples.marked.push_back(marked(name, survey.strobes.names, found.share, found.out));
+            watch.marked(samples.marked.back());
+        } else {
+            lit.push_back(std::move(samples.images[i]));
+        }
+    }
+    samples.images = std::move(lit);
+}
+
 }  // namespace
 
 FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
@@ -181,6 +212,8 @@ FitSamples samples_of_images(const Survey& survey,
     numbers.expected->image = size;
     numbers.expected->as = "as the rig's camera has";
     samples.looks_wrong = suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
+    std::vector<LightCells> cells;
+    std::vector<std::size_t> files;  // by image
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());
@@ -192,16 +225,20 @@ FitSamples samples_of_images(const Survey& survey,
             FitImage image{.name = survey.files[i].name.string(),
                            .sled = survey.sled_of(survey.files[i])};
             SurveyImage taken = read_survey_image(survey.files[i].source, numbers);
+            LightCells lit = light_cells(taken, survey, survey.files[i]);
             take_off_black(taken);
             average(taken.raw, taken.levels.white, samples.places.block_px, image);
-            return image;
+            return std::pair(std::move(image), std::move(lit));
         },
-        [&](std::size_t i, FitImage image) {
-            samples.images.push_back(std::move(image));
+        [&](std::size_t i, std::pair<FitImage, LightCells> read) {
+            samples.images.push_back(std::move(read.first));
+            cells.push_back(std::move(read.second));
+            files.push_back(i);
             watch.progress("reading",
                            static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
         },
         skip);
+    leave_lit(survey, cells, files, samples, watch);
     if (samples.images.empty()) {
         throw InputError("no image to be used; the first: {}",
                          samples.skipped.empty() ? "none" : samples.skipped.front().why);

@@ -32,8 +32,9 @@ struct FitSamples {
     FitPlaces places{};
     std::vector<FitImage> images{};
     bool are_maps = false;
-    Mosaic mosaic = Mosaic::None;  // of the files, as far as the survey says
-    std::vector<Skipped> skipped{};
+    Mosaic mosaic = Mosaic::None;          // of the files, as far as the survey says
+    std::vector<Skipped> skipped{};        // those without light among them
+    std::vector<MarkedImage> marked{};     // those that not all strobes lit, left out
     std::vector<Suspicion> looks_wrong{};  // of images; the watch was told
 };
 
@@ -41,6 +42,7 @@ struct FitSamples {
 [[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across);
 
 // The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone.
+// Which strobes lit them is judged by the survey's (dropouts.h): others are left out.
 // What survey_check.h doubts is told to the watch before. An InputError when none can be used.
 [[nodiscard]] FitSamples samples_of_images(const Survey& survey,
                                            PlaneSize size,

@@ -69,7 +69,7 @@ CameraNumbers with_rig(CameraNumbers camera, const Camera& rig) {
     if (!camera.mosaic) camera.mosaic = mosaic_named(readout.bayer);
     if (!camera.black_level) camera.black_level = level(readout.black_level_dn);
     if (!camera.white_level) camera.white_level = level(readout.white_level_dn);
-    if (camera.exposure_by == ExposureBy::Nothing) return camera;
+    if (!is_told_by_exif(camera.exposure_by)) return camera;
     camera.reference = shot_of(readout);
     if (camera.exposure_by == ExposureBy::Flash) camera.reference.time_s.reset();
     return camera;
@@ -134,6 +134,10 @@ nlohmann::ordered_json to_json(const CameraNumbers& camera) {
     if (camera.black_level) json["black_level"] = *camera.black_level;
     if (camera.white_level) json["white_level"] = *camera.white_level;
     if (camera.exposure_by == ExposureBy::Nothing) return json;
+    if (camera.exposure_by == ExposureBy::Model) {
+        json["exposure"] = {{"by", "model"}};
+        return json;
+    }
     const auto number = [](std::optional<double> told) {
         return told ? nlohmann::ordered_json(*told) : nlohmann::ordered_json();
     };
@@ -196,7 +200,7 @@ CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>&
     const auto is_told = [](const ShotExposure& shot) {
         return shot.time_s || shot.iso || shot.f_number;
     };
-    if (camera.exposure_by == ExposureBy::Nothing || is_told(camera.reference)) return camera;
+    if (!is_told_by_exif(camera.exposure_by) || is_told(camera.reference)) return camera;
     for (const ImageFile& file : files) {
         const SharedTags tags = read_image_tags(file.source);
         if (!tags) continue;

@@ -32,8 +32,12 @@ struct Crop {
 };
 
 // By what images are brought to one exposure: by the numbers that each file tells in its Exif. The
-// light of a flash does not grow with the time that the shutter is open.
-enum class ExposureBy { Nothing, Exif, Flash };
+// light of a flash does not grow with the time that the shutter is open. By the model: each to its
+// own level, whatever its file tells (survey/dropout_check.h).
+enum class ExposureBy { Nothing, Exif, Flash, Model };
+[[nodiscard]] constexpr bool is_told_by_exif(ExposureBy by) {
+    return by == ExposureBy::Exif || by == ExposureBy::Flash;
+}
 
 // Of a file that holds the images of two cameras side by side.
 enum class Half { Left, Right };

@@ -199,7 +199,7 @@ SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera)
         SurveyImage taken = is_raw_name(file) ? survey_image_of(open_raw_file(file), camera)
                                               : survey_image_of(open_any_image(file), camera);
         taken.tags = read_image_tags(file);
-        if (camera.exposure_by != ExposureBy::Nothing) {
+        if (is_told_by_exif(camera.exposure_by)) {
             const ShotExposure shot = taken.tags ? exposure_of(*taken.tags) : ShotExposure{};
             taken.exposure = relative_exposure(shot, camera);
         }

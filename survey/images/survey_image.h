@@ -7,6 +7,7 @@
 #include "survey/images/camera_numbers.h"
 #include "survey/images/raw_image.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -19,8 +20,10 @@ struct SurveyImage {
     double rounding = 0.0;  // of its numbers, as a standard deviation: of floats, none
     std::string description;
     std::string date_time;
-    double exposure = 1.0;  // times the reference's: what its light is to be divided by
-    SharedTags tags{};      // of the file; none: it has none
+    double exposure = 1.0;     // times the reference's: what its light is to be divided by
+    double light_share = 1.0;  // of the survey's light, that was on; and which strobes were out
+    std::uint64_t strobes_out = 0;  // (survey/dropouts.h)
+    SharedTags tags{};              // of the file; none: it has none
 };
 
 // An InputError when it cannot be read, has not the part that is asked for, or not the channels

@@ -189,7 +189,7 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
                 {"--bayer RGGB --half left",
                  "--half: found an image of 65 x 48 pixels; allowed: an even width"},
                 {"--half upper", "--half"},
-                {"--exposure auto", "--exposure: found auto; allowed: exif, flash, none"},
+                {"--exposure auto", "--exposure: found auto; allowed: exif, flash"},
                 {"--half left --crop 0,0,5,5", "--half excludes --crop"},
                 {"--bayer gray", "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono"},
                 {"--bayer RGGB --exposure exif", "no image's Exif has ExposureTime"}};

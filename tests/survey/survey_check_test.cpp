@@ -492,5 +492,24 @@ TEST(SurveyCheck, AltitudesInAnotherUnitThanTheRigsAreTold) {
     EXPECT_TRUE(has(told(1.0, 40.0), "another column, or rig?"));
 }
 
+// Exposures of 8, 4, 2 and 1 ms that need factors of 1, 1.14, 1.4 and 2: levels go as their cube
+// root, for 2 = 8^(1/3).
+TEST(SurveyCheck, ExposuresThatLevelsDoNotFollowAreTold) {
+    std::vector<ImageLook> looks(16);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        constexpr std::array kFactors{1.0, 1.14, 1.4, 2.0};
+        looks[i].told = 8.0 / static_cast<double>(1U << i % 4);
+        looks[i].level = -std::log(kFactors.at(i % 4));
+    }
+    const auto doubt = exposure_doubt(looks);
+    ASSERT_TRUE(doubt.has_value());
+    EXPECT_TRUE(
+        has(doubt->what, "vary 8-fold, where the images' own levels go as their power 0.3"));
+    for (ImageLook& look : looks) look.level = std::log(*look.told);
+    EXPECT_FALSE(exposure_doubt(looks).has_value());
+    for (ImageLook& look : looks) look.told.reset();
+    EXPECT_FALSE(exposure_doubt(looks).has_value());
+}
+
 }  // namespace
 }  // namespace aphotic::survey_check_test

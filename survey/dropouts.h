@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which strobes lit an image, by its signal in a coarse grid of cells and the light of each strobe
+// alone in these. Light adds up, so of strobes A that fired, on a floor of texture x,
+//
+//   m_k = e S_Ak (1 + x_k),    S_A = sum of the S_s of A,    level = ln(e / E)
+//   z_k(A) = ln(m_k / e + s) - ln(S_Ak + s)
+//
+// m    mean of a cell's green samples over black        S_s  light of strobe s alone (strobes_at.h)
+// e    the image's exposure times its floor's brightness: the median of m_k / S_Ak
+// E    the survey's: the median of e over its images    s    kStray of the brightest light
+//
+// Green alone, for strobes and floors differ little in colour, and water leaves it everywhere. Each
+// set A is judged by
+//
+//   l(A) = - sum over Haar's details d of z   1.5 ln(1 + d^2 / (2 sigma_j^2)) / kDispersion
+//          - 2.5 ln(1 + level^2 / (4 psi^2))
+//
+// as survey/fit/fit_objective.h has floors: details of rough fields are nearly independent and t of
+// two degrees of freedom, an image's level is t of four, and details of one image hang together by
+// a dispersion. sigma by size of cells and psi, a floor's differences from image to image, are
+// learned from the survey: medians over its images of what the best set of each leaves. So the
+// pattern tells which strobe is out; the level tells little, for a floor may be dark.
+//
+// Against "all fired, another floor" stand all sets of kMostSubsets strobes (of more, those that
+// lack one or two), and "all fired, dim": the level's density is then even over the logarithm from
+// kUnlit to 1. Of a survey's images kRare lack light beforehand, half of these by one of N sets,
+// which are decided for where their l is larger by ln(2 N / kRare), and by ln 10 for each strobe
+// out after the first; half of them are dim, by ln(2 / kRare). An image of less than kUnlit of the
+// survey's light is without light, whatever its pattern: no floor is so dark.
+//
+// Not told: a strobe that gives little of the light in view, or whose light is a constant share of
+// the others'; a dim image where floors differ as much: only under 0.14 of the light where they
+// differ by 25 %, only under 0.77 where by 2 %. Under kEnoughToLearn images floors differ by
+// kFloorSpread at least; without a map, when the level is all there is, so few are not judged.
+#pragma once
+
+#include "lightmap/lightmap.h"
+#include "survey/images/survey_image.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// What becomes of them: Mark corrects them by all light, and learns nothing from them.
+enum class Dropouts { Mark, Correct, Ignore };
+inline const std::map<std::string, Dropouts> kDropoutWords{
+    {"mark", Dropouts::Mark}, {"correct", Dropouts::Correct}, {"ignore", Dropouts::Ignore}};
+[[nodiscard]] std::string name_of(Dropouts dropouts);
+
+inline constexpr int kCells = 16;  // across and down, or a power of two below of small images
+inline constexpr double kStray = 0.01;
+inline constexpr double kDarkestCell = 0.03;  // of the brightest: darker ones do not count
+inline constexpr double kUnlit = 1.0 / 30.0;
+inline constexpr double kRare = 1e-2;  // dropouts, of a survey's images
+inline constexpr double kDetailDispersion = 3.0;
+inline constexpr std::size_t kMostSubsets = 10;
+inline constexpr std::size_t kMostStrobes = 32;
+inline constexpr std::size_t kEnoughToLearn = 8;
+inline constexpr double kFloorSpread = 0.5;
+
+// Row by row; NaN: not seen.
+using CellPlane = std::vector<double>;
+
+struct LightCells {
+    int side = 0;
+    CellPlane signal{};
+    CellPlane light{};                 // of all strobes
+    bool has_map = true;               // else the light is 1 everywhere
+    std::vector<CellPlane> strobes{};  // of each alone; empty: not known
+};
+
+[[nodiscard]] int cells_across(int width_px, int height_px);
+// Means of green over black, at the reference exposure. A cell of more than a hundredth of
+// saturated samples is not seen.
+[[nodiscard]] CellPlane cells_of(const SurveyImage& taken, int side);
+// Means of the signal where it is over 0, as at an observed mosaic's green sites.
+[[nodiscard]] CellPlane cells_of(const Lightmap& map, int side);
+
+struct DropoutScales {
+    std::size_t images = 0;        // learned from; 0: nothing is judged
+    double level = 0.0;            // ln E
+    double spread = 0.0;           // psi
+    std::vector<double> detail{};  // sigma, from the smallest cells on
+};
+
+// level_is_free: images have an exposure each, and the level tells nothing.
+[[nodiscard]] DropoutScales learned(std::span<const LightCells> images, bool level_is_free = false);
+
+struct Dropout {
+    std::uint64_t out = 0;   // bit s: strobe s
+    bool is_dark = false;    // without light
+    double share = 1.0;      // of the survey's light, that was on
+    double log_ratio = 0.0;  // of what was decided, or of the likeliest, to "all fired"
+    double level = 0.0;      // under what was decided: its own over the survey's
+
+    [[nodiscard]] bool is_any() const { return share < 1.0; }
+};
+
+// As it is named.
+struct MarkedImage {
+    std::string image;
+    double share = 1.0;
+    std::vector<std::string> strobes{};  // out; empty: all are dim
+};
+// "strobe fore did not fire: lit by 0.74 of the survey's light"
+[[nodiscard]] std::string words_of(const MarkedImage& marked);
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<MarkedImage>& marked);
+
+[[nodiscard]] Dropout judged(const LightCells& image, const DropoutScales& scales);
+
+}  // namespace aphotic
