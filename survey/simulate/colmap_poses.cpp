@@ -114,10 +114,10 @@ std::string colmap_images(const std::vector<Leg>& legs, const std::string& suffi
         const Eigen::Quaterniond q = turn_of(leg.sled);
         text += fmt::format("{} {} {} {} {} 0 0 {} 1 {}\n\n",
                             leg.image,
-                            q.w(),
-                            q.x(),
-                            q.y(),
-                            q.z(),
+                            q.w() + 0.0,  // without the sign of -0
+                            q.x() + 0.0,
+                            q.y() + 0.0,
+                            q.z() + 0.0,
                             leg.sled.altitude_m,
                             leg.name + suffix);
     }
