@@ -73,7 +73,7 @@ class SceneRanges : public testing::Test {
 
 // Two images of one world: every pixel's depth is that of the world's plane, ball and block in
 // closed form, seen along COLMAP's ray from COLMAP's place.
-TEST_F(SceneRanges, AreThoseOfOneWorldBySevenNumbersOfColmaps) {
+TEST_F(SceneRanges, AreThoseOfOneWorldByColmapsPoses) {
     write_scene(kWorld);
     const Rig rig = small_habcam();
     const std::vector<Leg> legs{{.image = 1,
@@ -151,8 +151,7 @@ TEST_F(SceneRanges, AreTheReferencesThroughLensesAndPorts) {
 // Beyond eight altitudes a range would be known to 0.3 % and less: it is not told, nor is the
 // sky's.
 TEST_F(SceneRanges, AreUnknownFarAway) {
-    write_scene(kWorld);
-    Rig rig = small_habcam();
+    const Rig rig = small_habcam();
     write_scene(replaced(kWorld, "Survey_Altitude>", "2>"));
     const std::vector<float> z =
         ranges(rig, {.image = 1, .name = "far", .sled = {.altitude_m = 0.24}});
@@ -163,6 +162,38 @@ TEST_F(SceneRanges, AreUnknownFarAway) {
     }
     EXPECT_GT(pixels[0], 100);
     EXPECT_GT(pixels[1], 2000);
+}
+
+// A mirror 1 m below the camera shows a ceiling 0.5 m above it: Z = 1 m + 1.5 m. One that gives
+// back half, or a pane, is no range that a ray goes.
+TEST_F(SceneRanges, OfAMirrorAreThoseOfWhatItShows) {
+    write_scene(
+        "#include \"aphotic.inc\"\nAphotic_Rig ()\nplane { z, -0.5 pigment { rgb 1 } }\n"
+        "box { <-9, -9, 1>, <0, 9, 2> pigment { rgb 0 } finish { reflection 1 } }\n"
+        "box { <0, -9, 1>, <9, 9, 2> pigment { rgb 0 } finish { reflection 0.5 Glow } }\n");
+    const std::vector<float> z =
+        ranges(small_habcam(), {.image = 1, .name = "mirror", .sled = {.altitude_m = 2.0}});
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        if (i % 68 < 34) {
+            ASSERT_NEAR(z[i], 2.5, png_error_m(3.2, 2.0)) << i;
+        } else {
+            ASSERT_GT(z[i], 1.1) << i;
+            ASSERT_LT(z[i], 2.4) << i;
+        }
+    }
+}
+
+// It would add to ours; what it has in green and blue gives it away.
+TEST_F(SceneRanges, RefuseAFogOfTheScenesOwn) {
+    write_scene(
+        "#include \"aphotic.inc\"\nAphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
+        "fog { distance 10 rgb 0.3 }\n#declare F = finish { Glow }\n");
+    EXPECT_TRUE(has(refusal_of([&] {
+                        static_cast<void>(
+                            ranges(small_habcam(),
+                                   {.image = 1, .name = "fog", .sled = {.altitude_m = 2.0}}));
+                    }),
+                    "found light with all strobes off"));
 }
 
 TEST_F(SceneRanges, RefuseWhatShines) {
