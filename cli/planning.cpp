@@ -15,6 +15,7 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -45,17 +46,13 @@ std::string ini_line(const std::string& setting) {
     return setting + "\n";
 }
 
-std::string clock_line(double clock) {
-    return fmt::format("; The scene's own.\nClock={}\n", clock);
-}
-
 PlanRequest request_of(const PlanningOptions& options) {
     PlanRequest request = options.plan;
     if (options.veil == "povray") request.scene.veil_samples = options.veil_samples;
     for (const std::string& setting : options.povray_ini) {
         request.scene.ini_lines.push_back(ini_line(setting));
     }
-    if (options.clock != 0.0) request.scene.ini_lines.push_back(clock_line(options.clock));
+    std::ranges::copy(scene_ini(options), std::back_inserter(request.scene.ini_lines));
     if (!options.paths_m.empty()) {
         request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
         if (options.paths_m[0] > options.paths_m[1]) {
@@ -81,8 +78,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
             "rig's `scene`",
             options.clock);
     }
-    std::vector<std::string> ini_lines;
-    if (options.clock != 0.0) ini_lines.push_back(clock_line(options.clock));
+    std::vector<std::string> ini_lines = scene_ini(options);
     for (const std::string& number : options.declared)
         ini_lines.push_back("Declare=" + number + "\n");
     ProgressLine line;
@@ -144,6 +140,11 @@ PovRay povray_for(const PlannedRender& planned,
             shell_word(options.rig_file),
             shell_word(folder));
     }
+}
+
+std::vector<std::string> scene_ini(const PlanningOptions& options) {
+    if (options.clock == 0.0) return {};
+    return {fmt::format("; The scene's own.\nClock={}\n", options.clock)};
 }
 
 RunOptions run_options(const PlanningOptions& options, int jobs) {

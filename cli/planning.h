@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace aphotic::cli {
 
@@ -34,6 +35,9 @@ struct PlannedRender {
 [[nodiscard]] PovRay povray_for(const PlannedRender& planned,
                                 const PlanningOptions& options,
                                 const std::string& folder);
+
+// Settings of POV-Ray's for a scene of the user's own: its clock.
+[[nodiscard]] std::vector<std::string> scene_ini(const PlanningOptions& options);
 
 [[nodiscard]] RunOptions run_options(const PlanningOptions& options, int jobs);
 

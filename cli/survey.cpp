@@ -17,16 +17,21 @@
 #include "cli/planning.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
+#include "plugin/range_render.h"
 #include "plugin/survey_render.h"
 #include "survey/first_look.h"
 #include "survey/images/camera_numbers.h"
 #include "survey/navigation/navigation_file.h"
+#include "survey/simulate/colmap_poses.h"
+#include "survey/simulate/image_truth.h"
+#include "validation/tracer.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 namespace aphotic::cli {
@@ -53,6 +58,7 @@ struct SurveyCommandOptions {
     double floor_share = 0.25;
     std::optional<double> electrons_per_signal;
     bool has_noise = true;
+    std::vector<std::string> truth;
     int jobs = all_cores();
     bool json = false;
 };
@@ -159,6 +165,23 @@ void fly(const SurveyCommandOptions& options, SimulatedSurvey& survey) {
     survey.corners = corners_of(sleds);
 }
 
+TruthAsked truth_asked(const SurveyCommandOptions& options, const Rig& rig) {
+    const auto is_asked = [&](const char* kind) {
+        return std::ranges::find(options.truth, kind) != options.truth.end();
+    };
+    for (const char* kind : {"normals", "reflectance"}) {
+        if (is_asked(kind) && !scene_of(options, rig).empty())
+            throw InputError(
+                "--truth: found {} of a POV-Ray scene of your own; allowed with one: depth, poses. "
+                "Without its textures POV-Ray tells ranges alone",
+                kind);
+    }
+    return {.depth = is_asked("depth"),
+            .normals = is_asked("normals"),
+            .reflectance = is_asked("reflectance"),
+            .poses = is_asked("poses")};
+}
+
 SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
     const std::string& file = options.planning.rig_file;
     SimulatedSurvey survey{.folder = options.folder,
@@ -189,6 +212,8 @@ SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
                       {"light", light_settings(options, survey.rig)}};
     if (!options.declared.empty() && scene_of(options, survey.rig).empty())
         throw InputError("--declare: found without a scene; allowed: with one, by --scene");
+    survey.truth = truth_asked(options, survey.rig);
+    if (survey.truth.poses) naming(file, [&] { require_colmap(survey.rig.camera, survey.legs); });
     return survey;
 }
 
@@ -199,31 +224,50 @@ std::optional<ManifestModel> model_of(const SimulatedSurvey& survey,
     return model_error(rig, planning.rig_file, planning.model_tolerance);
 }
 
-std::vector<SurveyPicture> pictures_of(const SimulatedSurvey& survey) {
+// With an image of that kind each.
+std::vector<SurveyPicture> pictures_of(const SimulatedSurvey& survey, const char* kind) {
     std::vector<SurveyPicture> pictures;
     for (const Leg& leg : survey.legs) {
         pictures.push_back({.number = leg.image,
                             .seed = floor_seed(survey.seed, leg.image),
                             .sled = leg.sled,
-                            .image = truth_file(survey, leg)});
+                            .image = file_of(survey, kind, leg)});
     }
     return pictures;
+}
+
+bool are_there(const std::vector<SurveyPicture>& pictures) {
+    return std::ranges::all_of(pictures, [](const auto& one) { return fs::exists(one.image); });
 }
 
 // None where no picture is missing that it would render.
 std::optional<PovRay> povray_for(const SurveyCommandOptions& options,
                                  const SimulatedSurvey& survey) {
-    const auto is_there = [](const SurveyPicture& picture) { return fs::exists(picture.image); };
-    if (!is_by_povray(options, survey.rig) || std::ranges::all_of(pictures_of(survey), is_there))
-        return std::nullopt;
+    const bool has_light =
+        !is_by_povray(options, survey.rig) || are_there(pictures_of(survey, "truth"));
+    const bool has_ranges = !survey.truth.depth || scene_of(options, survey.rig).empty() ||
+                            are_there(pictures_of(survey, "depth"));
+    if (has_light && has_ranges) return std::nullopt;
     PovRay povray = find_povray(options.planning.povray);
-    require_format(povray, options.planning.plan.scene.format);
+    if (!has_light) require_format(povray, options.planning.plan.scene.format);
     return povray;
+}
+
+RunOptions run_with_progress(const SurveyCommandOptions& options,
+                             ProgressLine& line,
+                             std::string_view what) {
+    RunOptions run = run_options(options.planning, options.jobs);
+    run.report = [&line, what](const FrameProgress& done) {
+        line.show(fmt::format("{}: {} of {} frames", what, done.frames_done, done.frames),
+                  done.share);
+    };
+    return run;
 }
 
 void make_truth_by_povray(const SurveyCommandOptions& options,
                           const SimulatedSurvey& survey,
                           const PovRay& povray) {
+    if (are_there(pictures_of(survey, "truth"))) return;
     PlanningOptions planning = options.planning;
     // The lowest, level: the brightest, from which the exposure is taken.
     planning.sled = {.altitude_m =
@@ -236,18 +280,49 @@ void make_truth_by_povray(const SurveyCommandOptions& options,
     }
     PlannedRender planned = plan_rig(planning);
     ProgressLine line;
-    RunOptions run = run_options(planning, options.jobs);
-    run.report = [&](const FrameProgress& done) {
-        line.show(fmt::format("rendering: {} of {} frames", done.frames_done, done.frames),
-                  done.share);
-    };
     render_pictures(povray,
                     survey.folder / "plan",
                     {.rig = std::move(planned.rig),
                      .plan = std::move(planned.plan),
                      .declared = options.declared},
-                    pictures_of(survey),
-                    run);
+                    pictures_of(survey, "truth"),
+                    run_with_progress(options, line, "rendering"));
+}
+
+// By POV-Ray, for only it can read the scene.
+void write_ranges_of_scene(const SurveyCommandOptions& options,
+                           const SimulatedSurvey& survey,
+                           const PovRay& povray) {
+    make_folder(survey.folder / "depth");
+    ProgressLine line;
+    render_ranges(povray,
+                  survey.folder / "plan" / "ranges",
+                  {.rig = survey.rig,
+                   .scene = scene_of(options, survey.rig),
+                   .declared = options.declared,
+                   .ini_lines = scene_ini(options.planning)},
+                  pictures_of(survey, "depth"),
+                  run_with_progress(options, line, "ranges"));
+}
+
+// By the reference's geometry, which needs neither lamps nor what scatters.
+void write_what_is_seen(const SimulatedSurvey& survey) {
+    Rig dark = survey.rig;
+    dark.strobes.clear();
+    dark.water.scatterers.clear();
+    const double middle_nm = std::midpoint(dark.camera.range.first_nm, dark.camera.range.last_nm);
+    write_seen(survey, [&](const Sled& sled) {
+        Rig at_pose = dark;
+        at_pose.sled = sled;
+        const auto tracer = std::make_shared<const Tracer>(
+            at_pose, TraceOptions{.signals = false, .planes_nm = {}});
+        return [tracer, middle_nm](double column, double row) -> std::optional<SeenPoint> {
+            const auto seen = tracer->seen(column, row, middle_nm);
+            if (!seen) return std::nullopt;
+            return SeenPoint{
+                .point_m = seen->point_m, .normal = seen->normal, .surface = seen->surface};
+        };
+    });
 }
 
 ExitStatus make_survey(const SurveyCommandOptions& options) {
@@ -260,11 +335,16 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
     begin_survey(survey);
     ProgressLine line;
     survey.progress = [&](double share) { line.show("images", share); };
-    if (povray) {
-        make_truth_by_povray(options, survey, *povray);
-    } else if (!is_by_povray(options, survey.rig)) {
+    const bool has_scene = !scene_of(options, survey.rig).empty();
+    if (is_by_povray(options, survey.rig)) {
+        if (povray) make_truth_by_povray(options, survey, *povray);
+    } else {
         naming(options.planning.rig_file, [&] { make_truth_by_lightmaps(survey); });
     }
+    if (!has_scene)
+        write_what_is_seen(survey);
+    else if (survey.truth.depth && povray)
+        write_ranges_of_scene(options, survey, *povray);
     finish_survey(survey);
     line.wipe();
     show(MadeSurvey{.survey = survey, .model = model}, options.json);
@@ -318,6 +398,10 @@ void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
     add_option(app, "--texture", options.texture)->check(in_range(0.0, kMostContrast));
     add_flag(app, "--by-povray", options.by_povray);
     add_option(app, "--declare", options.declared)->check(refused_by(require_declaration));
+    add_option(app, "--truth", options.truth)
+        ->delimiter(',')
+        ->check(
+            CLI::IsMember(std::vector<std::string>{"depth", "normals", "reflectance", "poses"}));
 }
 
 void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {

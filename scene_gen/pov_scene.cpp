@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -560,27 +561,53 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     return scenes;
 }
 
-std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
+namespace {
+
+// Of a user's scene that is not planned yet: everything white.
+std::string unplanned_sdl(const Rig& rig,
+                          const std::string& scene_name,
+                          bool has_rays,
+                          const std::function<void(Band&)>& set_light) {
     SceneOptions options;
     options.user_scene = std::make_shared<UserScene>();
     // Of paths that are told to a hundredth.
     options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
-    parts.has_rays = false;  // the pinhole that shows as much tells all that is asked
+    parts.has_rays = has_rays;
     const PlannedWavelength middle{.lambda_nm = middle_nm, .index_nm = middle_nm};
     Band band = band_of(rig, parts, {&middle, 1});
-    for (std::size_t c = 0; c < band.exposure.size(); ++c) {
-        band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
-    }
-    band.attenuation_per_m = frame.attenuation_per_m;
+    set_light(band);
+    return body_sdl(band, parts, options, scene_name);
+}
+
+}  // namespace
+
+std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
     if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
     if (frame.is_coarse_in_radiosity) sdl += "#declare Aphotic_Coarse_Radiosity = true;\n";
     if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }
-    return sdl + body_sdl(band, parts, options, scene_name);
+    // The pinhole that shows as much tells all that is asked.
+    return sdl + unplanned_sdl(rig, scene_name, false, [&](Band& band) {
+               for (std::size_t c = 0; c < band.exposure.size(); ++c) {
+                   band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
+               }
+               band.attenuation_per_m = frame.attenuation_per_m;
+           });
+}
+
+std::string distance_sdl(const Rig& rig,
+                         const std::string& scene_name,
+                         const std::string& declarations,
+                         double fog_m) {
+    return fmt::format(
+               "#version 3.7;\n{}#declare Aphotic_Probe = true;\n#declare Aphotic_Fog = {};\n",
+               declarations,
+               sdl_number(fog_m)) +
+           unplanned_sdl(rig, scene_name, rig.camera.lens.has_value(), [](Band&) {});
 }
 
 namespace {

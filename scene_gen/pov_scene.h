@@ -64,7 +64,7 @@ struct SceneOptions {
     std::vector<std::string> ini_lines{};
 };
 
-// Of the frame that tells how far each pixel sees, by a white fog (spectral/manifest.h), in water
+// Of the frame that tells how far each pixel sees, by a fog (spectral/manifest.h), in water
 // that scatters over anything but the rig's bare floor, unless POV-Ray makes the veil; else 0. So
 // large that the fog is about proportional to the distance, whose digits are a half float's; for a
 // PNG, whose steps are even, as large as what is in view is far.
@@ -108,6 +108,15 @@ struct SurveyFrame {
 [[nodiscard]] std::string survey_sdl(const Rig& rig,
                                      const std::string& scene_name,
                                      const SurveyFrame& frame);
+
+// A frame that tells how far each pixel of the image sees in a user's scene: nothing shines, no
+// texture is asked, and a fog leaves 1 - exp(-D / fog_m) in red and nothing in green and blue, D
+// being the ray's way in water. What green or blue hold shines of itself. The rays are the lens's,
+// at the middle of the camera's range.
+[[nodiscard]] std::string distance_sdl(const Rig& rig,
+                                       const std::string& scene_name,
+                                       const std::string& declarations,
+                                       double fog_m);
 
 // The settings under which every scene of the rig renders, as a POV-Ray INI file.
 [[nodiscard]] std::string render_ini(const Rig& rig, const SceneOptions& options = {});

@@ -80,8 +80,8 @@ struct ManifestPovrayVeil {
 // What the water scatters into the view: a file beside the frames (veil_path), or frames of
 // POV-Ray's.
 //
-// Where more than the bare floor is in view, the last frame holds no light but a white fog of the
-// distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
+// Where more than the bare floor is in view, the last frame holds no light but, in red, a fog of
+// the distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
 struct ManifestVeil {
     std::string sha256{};  // of the file; empty: not made yet, or POV-Ray makes it
     double fog_m = 0.0;    // 0: the bare floor, and no such frame

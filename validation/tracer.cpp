@@ -402,6 +402,12 @@ std::optional<VeilRay> Tracer::ray(double column, double row, double lambda_nm) 
     return view.ray;
 }
 
+std::optional<Tracer::Seen> Tracer::seen(double column, double row, double lambda_nm) const {
+    View view;
+    if (!look(column, row, index_at(lambda_nm), view)) return std::nullopt;
+    return Seen{.point_m = view.point_m, .normal = view.normal, .surface = view.surface};
+}
+
 bool Tracer::look_along(const WideVector& sight, const Index& index, View& view) const {
     TracedRay ray{.direction = sight};
     if (rig_.camera.port) ray = through_port(*rig_.camera.port, sight, index.glass, index.water);

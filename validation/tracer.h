@@ -134,6 +134,14 @@ class Tracer {
     // nothing.
     [[nodiscard]] std::optional<VeilRay> ray(double column, double row, double lambda_nm) const;
 
+    // What a point of the image shows at a wavelength; none where it sees nothing.
+    struct Seen {
+        Eigen::Vector3d point_m;
+        Eigen::Vector3d normal;   // unit, towards the camera
+        std::size_t surface = 0;  // the floor, then the objects in the rig's order
+    };
+    [[nodiscard]] std::optional<Seen> seen(double column, double row, double lambda_nm) const;
+
     // Of the full spectrum; 0 without signals.
     [[nodiscard]] std::size_t grid_size() const { return signal_nodes_; }
 

@@ -10,6 +10,7 @@
 #include "image/output_images.h"
 #include "lightmap/lightmap.h"
 #include "rig/geometry.h"
+#include "survey/simulate/colmap_poses.h"
 #include "survey/simulate/floor_texture.h"
 #include "survey/simulate/random_draw.h"
 
@@ -24,10 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using SettingsJson = nlohmann::ordered_json;
-
-fs::path file_of(const SimulatedSurvey& survey, const char* kind, const Leg& leg) {
-    return survey.folder / kind / (leg.name + (std::string_view(kind) == "raw" ? ".tif" : ".exr"));
-}
 
 SettingsJson settings_of(const SimulatedSurvey& survey) {
     const InstrumentErrors& errors = survey.errors;
@@ -152,16 +149,25 @@ void require_different_names(const std::vector<Leg>& legs) {
 
 }  // namespace
 
+fs::path file_of(const SimulatedSurvey& survey, const char* kind, const Leg& leg) {
+    return survey.folder / kind / (leg.name + (std::string_view(kind) == "raw" ? ".tif" : ".exr"));
+}
+
 fs::path truth_file(const SimulatedSurvey& survey, const Leg& leg) {
     return file_of(survey, "truth", leg);
 }
 
 std::uint64_t missing_bytes(const SimulatedSurvey& survey) {
-    constexpr std::uint64_t kPixel_bytes = 18;  // three floats of truth, one of texture, 16 bits
-    const auto missing = std::ranges::count_if(
-        survey.legs, [&](const Leg& leg) { return !fs::exists(file_of(survey, "raw", leg)); });
+    const auto missing = [&](const char* kind, std::uint64_t pixel_bytes, bool is_asked) {
+        const auto files = std::ranges::count_if(
+            survey.legs, [&](const Leg& leg) { return !fs::exists(file_of(survey, kind, leg)); });
+        return is_asked ? pixel_bytes * static_cast<std::uint64_t>(files) : 0;
+    };
     const Camera& camera = survey.rig.camera;
-    return kPixel_bytes * static_cast<std::uint64_t>(missing) *
+    // With a raw image go three floats of truth and one of texture.
+    return (missing("raw", 18, true) + missing("depth", 4, survey.truth.depth) +
+            missing("normals", 12, survey.truth.normals) +
+            missing("reflectance", 12, survey.truth.reflectance)) *
            static_cast<std::uint64_t>(camera.width_px) *
            static_cast<std::uint64_t>(camera.height_px);
 }
@@ -201,6 +207,8 @@ void finish_survey(const SimulatedSurvey& survey) {
     write_text_file(survey.folder / "navigation.txt", navigation_text(told, ".tif"));
     write_text_file(survey.folder / "navigation-measured.txt",
                     navigation_text(as_measured(told, survey.errors, survey.seed), ".tif"));
+    if (survey.truth.poses)
+        write_colmap(survey.folder / "colmap", survey.rig.camera, survey.legs, ".tif");
     write_text_file(survey.folder / kSurveyNotes,
                     json_text({{"settings", settings_of(survey)}, {"images", survey.legs.size()}}));
 }

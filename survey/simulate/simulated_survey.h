@@ -9,6 +9,9 @@
 //   texture/000001.exr        what the floor reflects, times the rig's floor: float Y
 //   raw/000001.tif            what the camera's file holds (raw_camera.h), 16 bits
 //
+// and, where they are asked for, depth, normals, reflectance (image_truth.h) and poses
+// (colmap_poses.h). No image depends on these, so they may be asked for later.
+//
 // A flat floor's truth is made here, of lightmaps:
 //
 //   S_c(pixel) = map_c T(x, y) + veil_c          (x, y) the pixel's place on the floor
@@ -34,6 +37,13 @@
 
 namespace aphotic {
 
+struct TruthAsked {
+    bool depth = false;
+    bool normals = false;
+    bool reflectance = false;
+    bool poses = false;
+};
+
 struct SimulatedSurvey {
     std::filesystem::path folder;
     Rig rig;
@@ -46,12 +56,17 @@ struct SimulatedSurvey {
     double tolerance = 1e-3;  // of the veil that lightmaps have, as a share of the signal
     std::uint64_t seed = 1;
     int jobs = 1;
+    TruthAsked truth{};
     nlohmann::ordered_json made_by{};  // what else the images depend on
     std::function<void(double share)> progress = [](double) {};
 };
 
 inline constexpr const char* kSurveyNotes = "survey.json";
 
+// Of an image; kind: the folder's name, such as "raw".
+[[nodiscard]] std::filesystem::path file_of(const SimulatedSurvey& survey,
+                                            const char* kind,
+                                            const Leg& leg);
 [[nodiscard]] std::filesystem::path truth_file(const SimulatedSurvey& survey, const Leg& leg);
 
 // Of files that are to be written yet, uncompressed.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // `aphotic survey` of what POV-Ray renders.
+#include "image/exr.h"
 #include "image/output_images.h"
 #include "support/command_test.h"
 #include "support/scene_text.h"
@@ -74,6 +75,31 @@ TEST_F(SurveyByPovray, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
 
     refused(survey.make("--images 2 --seed 2"), "another folder");
     EXPECT_EQ(read_text_file(first), bytes);
+}
+
+// Of a scene that is there already, too, at the pose and with the declarations of each image. The
+// card is a plane: its axis meets it at the altitude, and its depths are those of the flat floor.
+TEST_F(SurveyByPovray, TellsTheRangesOfAScene) {
+    const SmallSurvey survey;
+    done(survey.make("--images 2 --declare Survey_Floor=\"card\""));
+    done(survey.make("--images 2 --declare Survey_Floor=\"card\" --truth depth,poses"));
+    done(run_aphotic(
+        survey.folder(),
+        {"survey", survey.rig().string(), "--images", "2", "-o", "flat", "--truth", "depth"}));
+    // Of the altitude, up to one and a half: 2^-17 exp(3/2), and floats' rounding.
+    constexpr double kPng = 0x1p-17 * 4.6;
+    for (const Leg& leg : flight({}, 1, 2)) {
+        const auto ranges = [&](const fs::path& folder) {
+            return ExrReader(survey.folder() / folder / "depth" / (leg.name + ".exr"))
+                .planes(std::vector<std::string>{"Z"});
+        };
+        const std::vector<float> scene = ranges("out");
+        const std::vector<float> flat = ranges("flat");
+        ASSERT_EQ(scene.size(), flat.size());
+        for (std::size_t i = 0; i < flat.size(); ++i)
+            ASSERT_NEAR(scene[i], flat[i], kPng * leg.sled.altitude_m) << leg.name << ' ' << i;
+    }
+    EXPECT_TRUE(fs::exists(survey.folder() / "out/colmap/images.txt"));
 }
 
 // The rig's own floor and objects, in water that scatters, where POV-Ray tells how far pixels see.

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,46 @@ TEST_F(SurveyCommand, FliesTheUsersNavigation) {
     done(command);  // the same again
     write_file(path("dive.csv"), "image,altitude_m,pitch_deg,roll_deg\nB.jpg,2,1,0\n");
     refused(command, "another");
+}
+
+// Asked for later, it is added, and nothing else changes.
+TEST_F(SurveyCommand, AddsTheTruthThatIsAskedFor) {
+    done("survey rig.toml --images 2 -o out");
+    const auto before = files_in("out");
+    done("survey rig.toml --images 2 --truth depth,reflectance --truth poses -o out");
+    auto after = files_in("out");
+    std::set<std::string> added;
+    for (const auto& [name, bytes] : after) {
+        if (!before.contains(name)) added.insert(name);
+    }
+    EXPECT_EQ(added,
+              (std::set<std::string>{"colmap/cameras.txt",
+                                     "colmap/images.txt",
+                                     "colmap/points3D.txt",
+                                     "depth/000001.exr",
+                                     "depth/000002.exr",
+                                     "reflectance/000001.exr",
+                                     "reflectance/000002.exr"}));
+    for (const auto& [name, bytes] : before) EXPECT_EQ(after[name], bytes) << name;
+    // Of a floor of one colour: that times its texture.
+    const std::vector<float> texture =
+        ExrReader(path("out/texture/000002.exr")).planes(std::vector<std::string>{"Y"});
+    const std::vector<float> green =
+        ExrReader(path("out/reflectance/000002.exr")).planes(std::vector<std::string>{"G"});
+    constexpr double kFloat = 4e-7;  // rounding, of a few operations
+    for (std::size_t i = 0; i < texture.size(); ++i)
+        ASSERT_NEAR(green[i] / texture[i], green[0] / texture[0], kFloat) << i;
+}
+
+TEST_F(SurveyCommand, RefusesTruthThatCannotBeHad) {
+    refused("survey rig.toml --images 1 --truth ranges -o out", "--truth");
+    write_file(path("mine.pov"), "#include \"aphotic.inc\"\nAphotic_Rig ()\n");
+    refused(
+        "survey rig.toml --images 1 --scene mine.pov --truth depth,normals -o out",
+        "--truth: found normals of a POV-Ray scene of your own; allowed with one: depth, poses");
+    write_file(path("dive.csv"), "image,altitude_m,pitch_deg,roll_deg\nB 1.jpg,2,1,0\n");
+    refused("survey rig.toml --flight dive.csv --truth poses -o out",
+            "rig.toml: found an image named 'B 1'; allowed for COLMAP: names without blanks");
 }
 
 TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {

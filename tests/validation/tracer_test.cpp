@@ -9,6 +9,7 @@
 #include "rig/file/rig_reader.h"
 #include "scene_gen/light_paths.h"
 #include "spectral/curve_loader.h"
+#include "support/cast_ray.h"
 #include "support/closed_form.h"
 #include "support/flat.h"
 #include "support/refusal.h"
@@ -1125,6 +1126,38 @@ TEST(TracerObjectEdges, AreWhereABlockerIsTooNearForPovRay) {
 
 TEST(TracerObjectEdges, AllowWhatThePlanDoes) {
     EXPECT_EQ(kSteepest, kObjectTilt);
+}
+
+// A tilted floor, a ball and a block, whose rays are solved by hand.
+TEST(Tracer, SeesWhatARayMeetsFirst) {
+    Rig rig = plain_rig(40, 30, 0.03);
+    rig.sled = {.altitude_m = 2.0, .pitch_rad = 0.3, .roll_rad = -0.2};
+    const CastScene scene{
+        .up = {std::sin(0.3), -std::cos(0.3) * std::sin(-0.2), -std::cos(0.3) * std::cos(-0.2)},
+        .height_m = -2.0 * std::cos(0.3) * std::cos(-0.2),
+        .ball = {.centre_m = {0.2, 0.3, 1.5}, .radius_m = 0.2},
+        .block = {.least_m = {-0.5, -0.6, 1.2}, .most_m = {-0.1, -0.2, 1.6}}};
+    rig.objects = {{.name = "ball", .shape = scene.ball, .reflectance = flat(1.0)},
+                   {.name = "block", .shape = scene.block, .reflectance = flat(1.0)}};
+    const Tracer tracer(rig, {.signals = false, .planes_nm = {}});
+    std::array<int, 3> pixels{};
+    for (int row = 0; row < 30; ++row) {
+        for (int column = 0; column < 40; ++column) {
+            const Vector3d along((14.5 - row) * 0.03, (column - 19.5) * 0.03, 1.0);
+            const CastHit hit = cast_ray(scene, Vector3d::Zero(), along);
+            const auto seen = tracer.seen(column + 0.5, row + 0.5, kLambda_nm);
+            ASSERT_TRUE(seen);
+            EXPECT_LT((seen->point_m - hit.way * along).norm(), kRounding) << column << ' ' << row;
+            EXPECT_LT((seen->normal - hit.normal).norm(), 1e2 * kRounding) << column << ' ' << row;
+            ++pixels.at(seen->surface);
+        }
+    }
+    for (const int some : pixels) EXPECT_GT(some, 20) << "all are in view";
+    rig.sled.pitch_rad = 1.5;  // the floor falls away ahead, up the image
+    rig.objects.clear();
+    const Tracer over_horizon(rig, {.signals = false, .planes_nm = {}});
+    EXPECT_FALSE(over_horizon.seen(20.5, 0.5, kLambda_nm));
+    EXPECT_TRUE(over_horizon.seen(20.5, 29.5, kLambda_nm));
 }
 
 }  // namespace
