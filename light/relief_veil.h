@@ -7,7 +7,8 @@
 //   Z_k = (1 + kVeilDepthStep)^k metres
 //
 // as images ask for them, and interpolated: linearly over the image, by the cubic in ln Z through
-// four depths. Where a sight enters a beam it is off by the most; tests measure it.
+// four depths. Where a sight touches the edge of a beam that is off by up to 1 % of the signal, at
+// 99 of 100 pixels by under 0.1 % (of HabCam's cones; the test measures it).
 #pragma once
 
 #include "light/floor_light.h"
