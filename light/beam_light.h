@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A strobe's beam, made ready to be asked for many directions: a round one by its profile
-// (rig/beam/round_profile.h), others by rig/beam/beam.h's formulas.
+// (rig/beam/round_profile.h), a table over two angles by its cells (rig/beam/table_cells.h), others
+// by rig/beam/beam.h's formulas; what a window does to those is a profile, too.
 //
 //   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
 //
 // Directions are in the sled's frame, of any length but 0.
 #pragma once
 
+#include "base/lanes.h"
 #include "rig/beam/beam.h"
 #include "rig/beam/beam_crease.h"
 #include "rig/beam/round_profile.h"
+#include "rig/beam/table_cells.h"
 #include "rig/rig.h"
 
 #include <Eigen/Core>
@@ -26,14 +29,24 @@ class BeamLight {
     BeamLight(const Beam& beam, const Eigen::Vector3d& axis);
 
     [[nodiscard]] double at(const Eigen::Vector3d& towards) const;
+    // Of directions of these lengths.
+    [[nodiscard]] Lanes at(const LaneVector& towards, const Lanes& length) const;
     // As though what lights the direction `from` had no edge (continued_intensity()).
     [[nodiscard]] double continued(const Eigen::Vector3d& towards,
                                    const Eigen::Vector3d& from) const;
 
   private:
+    // Without what a window lets through.
+    [[nodiscard]] Lanes of_pattern(const LaneVector& towards, const Lanes& length) const;
+
     Beam beam_;
     BeamFrame frame_;
     std::optional<RoundProfile> profile_;  // of a beam that is round
+    // Of others, whose frame is turned as the pattern is.
+    BeamFrame pattern_frame_;
+    Beam in_air_;
+    std::optional<RoundProfile> window_factor_;
+    std::optional<TableCells> cells_;
 };
 
 // Where a strobe's beam ends sharply: circles about its axis, and a rim that is none

@@ -33,13 +33,22 @@ struct Arriving {
     T per_area;  // cos(i) / d^2  [1/m^2]
     T path_m;    // d + r
 };
-template <typename T>
-[[nodiscard]] Arriving<T> arriving(const T& lamp_height_m,
-                                   const BasicFloorRay<T>& ray,
+template <typename T, typename Height>
+[[nodiscard]] Arriving<T> arriving(const Height& lamp_height_m,
+                                   const Height& height_m,
+                                   const T& down,
                                    const T& length) {
-    const T share = ray.down / length;
+    const T share = down / length;
     return {.per_area = lamp_height_m * share * share * share,
-            .path_m = (ray.height_m + length) / ray.down};
+            .path_m = (height_m + length) / down};
+}
+
+// What a highlight has in place of cos(i). along: D.V
+[[nodiscard]] inline double highlight_per_area(
+    const Seafloor& floor, double lamp_height_m, double down, double along, double length) {
+    const double aligned = (2.0 * down * down * lamp_height_m - along) / length;
+    if (!(aligned > 0.0)) return 0.0;  // where phong_size is 0 too
+    return down * down / (length * length) * floor.phong * std::pow(aligned, floor.phong_size);
 }
 
 struct FloorArrival {
@@ -63,15 +72,13 @@ template <typename Intensity>
     const double I = intensity(light.towards);
     if (I == 0.0) return light;
     const double length = light.towards.norm();
-    const Arriving<double> even = arriving(lamp_height_m, ray, length);
+    const Arriving<double> even = arriving(lamp_height_m, ray.height_m, ray.down, length);
     light.diffuse = share * I * even.per_area;
     light.path_m = even.path_m;
     if (floor.phong == 0.0) return light;
-    const double aligned =
-        (2.0 * ray.down * ray.down * lamp_height_m - ray.direction.dot(light.towards)) / length;
-    if (aligned > 0.0)  // none, where phong_size is 0 too
-        light.highlight = share * I * ray.down * ray.down / (length * length) * floor.phong *
-                          std::pow(aligned, floor.phong_size);
+    light.highlight = share * I *
+                      highlight_per_area(
+                          floor, lamp_height_m, ray.down, ray.direction.dot(light.towards), length);
     return light;
 }
 

@@ -50,8 +50,8 @@ class FloorTiles : public TileLight {
         for (const FloorLamp* lamp : lamps) rest.push_back({.lamp = lamp});
     }
 
-    [[nodiscard]] PlaceRays place(double column, double row, bool is_exact) const {
-        return light_.rays_at(column, row, is_exact);
+    [[nodiscard]] PlaceRays place(const std::array<PixelPlace, 1>& at, bool is_exact) const {
+        return light_.rays_at(at[0][0], at[0][1], is_exact);
     }
 
     [[nodiscard]] PlaceLight find(const Group& lamps, const PlaceRays& rays, bool is_exact) const {
@@ -79,16 +79,61 @@ class FloorTiles : public TileLight {
                 const PlaceRays& rays,
                 const PlaceSignals& signals,
                 PlaceLight& light) {
-        outside_.is_before |= light.is_before;
-        outside_.is_beyond |= light.is_beyond;
+        note(light);
         Signals all = light.signals;
         for (std::size_t c = 0; c < kChannels; ++c) all[c] += signals[c];
         if (is_in_doubt(light, all)) light.signals = light_.dispersed(lamps, column, row, rays);
     }
 
+  protected:
+    [[nodiscard]] const FloorLight& light() const { return light_; }
+    void note(const PlaceLight& light) {
+        outside_.is_before |= light.is_before;
+        outside_.is_beyond |= light.is_beyond;
+    }
+
   private:
     const FloorLight& light_;
     Outside outside_;
+};
+
+// The same of a camera without a port, by lanes.
+class FloorLanes : public FloorTiles {
+  public:
+    static constexpr std::size_t kLanes = aphotic::kLanes;
+    using Place = LaneRays;
+    using Found = LaneLight;
+    using FloorTiles::FloorTiles;
+
+    [[nodiscard]] LaneRays place(const std::array<PixelPlace, kLanes>& at,
+                                 bool /*is_exact*/) const {
+        Lanes column;
+        Lanes row;
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            column[k] = at[k][0];
+            row[k] = at[k][1];
+        }
+        return light().rays_at(column, row);
+    }
+
+    [[nodiscard]] LaneLight find(const Group& lamps,
+                                 const LaneRays& rays,
+                                 bool /*is_exact*/) const {
+        LaneLight found;
+        for (const FloorLamp* lamp : lamps) light().add(*lamp, rays, found);
+        return found;
+    }
+
+    static PlaceLight of_lane(const LaneLight& found, std::size_t k) { return found.of_lane(k); }
+
+    void settle(const Group& /*lamps*/,
+                double /*column*/,
+                double /*row*/,
+                const LaneRays& /*rays*/,
+                const PlaceSignals& /*signals*/,
+                const PlaceLight& light) {
+        note(light);
+    }
 };
 
 // The rays of a tile's places at all nodes, the middle one first.
@@ -121,6 +166,21 @@ std::vector<FloorTiles::Group> FloorTiles::split(const Tile& tile,
     return smooth.empty() ? std::vector<Group>{} : std::vector<Group>{smooth};
 }
 
+template <class Tiles>
+Outside paint_by(const FloorLight& light,
+                 const std::vector<LampCrease>& lamps,
+                 int threads,
+                 const ImageRows& rows) {
+    std::vector<Tiles> by_thread(static_cast<std::size_t>(threads), Tiles(light));
+    paint_tiles(by_thread, lamps, kFloorTile_px, rows);
+    Outside all;
+    for (const Tiles& one : by_thread) {
+        all.is_before |= one.outside().is_before;
+        all.is_beyond |= one.outside().is_beyond;
+    }
+    return all;
+}
+
 }  // namespace
 
 Outside paint_floor(const FloorLight& light, int threads, const ImageRows& rows) {
@@ -130,14 +190,8 @@ Outside paint_floor(const FloorLight& light, int threads, const ImageRows& rows)
         for (const Crease& crease : light.creases(lamp))
             lamps.push_back({.lamp = &lamp, .crease = &crease});
     }
-    std::vector<FloorTiles> by_thread(static_cast<std::size_t>(threads), FloorTiles(light));
-    paint_tiles(by_thread, lamps, kFloorTile_px, rows);
-    Outside all;
-    for (const FloorTiles& one : by_thread) {
-        all.is_before |= one.outside().is_before;
-        all.is_beyond |= one.outside().is_beyond;
-    }
-    return all;
+    return light.has_port() ? paint_by<FloorTiles>(light, lamps, threads, rows)
+                            : paint_by<FloorLanes>(light, lamps, threads, rows);
 }
 
 }  // namespace aphotic

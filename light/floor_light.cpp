@@ -38,6 +38,27 @@ LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     return grid;
 }
 
+// add_signal() of lanes whose places lie in one step of the table.
+void add_of_step(const std::vector<float>& table,
+                 double step,
+                 const Lanes& place,
+                 const Lanes& factor,
+                 LaneLight& light) {
+    const float* const cubic = &table[static_cast<std::size_t>(step) * kTableStride];
+    for_each_pack([&](std::size_t k) {
+        const Pack t = place.pack(k) - step;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const auto of_degree = [&](std::size_t degree) {
+                return Pack(static_cast<double>(cubic[c + degree * kTableLanes]));
+            };
+            const Pack T =
+                of_degree(0) + t * (of_degree(1) + t * (of_degree(2) + t * of_degree(3)));
+            Lanes& signals = light.signals[c];
+            signals.set_pack(k, signals.pack(k) + factor.pack(k) * T);
+        }
+    });
+}
+
 }  // namespace
 
 std::string in_words(const Sled& sled) {
@@ -87,7 +108,11 @@ FloorLight::FloorLight(const Rig& rig,
                        const Sled& sled,
                        const SignalTable& table,
                        const CameraRays& rays)
-    : rig_(rig), table_(table), rays_(rays), floor_(floor_plane(sled)) {
+    : rig_(rig),
+      table_(table),
+      rays_(rays),
+      floor_(floor_plane(sled)),
+      pupil_m_(height_above(floor_, Vector3d::Zero())) {
     require_over_floor(rig, sled);
     if (table.lamps.empty()) return;
     Rig flown = rig;
@@ -127,6 +152,81 @@ FloorArrival FloorLight::arrive(const FloorLamp& lamp,
                    });
 }
 
+double FloorLight::shine(const LampSignal& signal,
+                         std::size_t node,
+                         const FloorArrival& arrived,
+                         PlaceLight& light) const {
+    if (arrived.diffuse == 0.0) return -1.0;
+    const double place = place_in_table(arrived.path_m);
+    light.is_before |= place < 0.0;
+    light.is_beyond |= place >= table_.steps.count;
+    if (place < 0.0 || place >= table_.steps.count) return -1.0;
+    add_signal(signal.diffuse[node], place, arrived.diffuse, light.signals);
+    if (!signal.highlight.empty())
+        add_signal(signal.highlight[node], place, arrived.highlight, light.signals);
+    return place;
+}
+
+LaneRays FloorLight::rays_at(const Lanes& column, const Lanes& row) const {
+    LaneRays rays{.direction = rays_.in_air(column, row), .down = {}};
+    if (pupil_m_ <= 0.0) return rays;
+    for_each_pack([&](std::size_t k) {
+        const Pack down = -dot(floor_.normal, pack(rays.direction, k));
+        rays.down.set_pack(k, std::experimental::max(down, Pack(0.0)));
+    });
+    return rays;
+}
+
+void FloorLight::add(const FloorLamp& lamp, const LaneRays& rays, LaneLight& light) const {
+    const StrobeLight& strobe = strobes_[lamp.strobe];
+    LaneVector V;
+    Lanes length;
+    Lanes diffuse;
+    Lanes path_m;
+    Lanes along;
+    for_each_pack([&](std::size_t k) {
+        const PackVector D = pack(rays.direction, k);
+        const Pack down = rays.down.pack(k);
+        PackVector way;
+        for (std::size_t i = 0; i < 3; ++i)
+            way[i] = pupil_m_ * D[i] - lamp.position_m(static_cast<Eigen::Index>(i)) * down;
+        const Pack d = root(dot(way, way));
+        const Arriving<Pack> even = arriving(lamp.floor_m, pupil_m_, down, d);
+        set_pack(V, k, way);
+        length.set_pack(k, d);
+        diffuse.set_pack(k, even.per_area);  // so far
+        path_m.set_pack(k, even.path_m);
+        along.set_pack(k, dot(D, way));
+    });
+    const Lanes I = strobe.beam.at(V, length);
+    Lanes place;
+    for_each_pack([&](std::size_t k) {
+        diffuse.set_pack(k, lamp.share * I.pack(k) * diffuse.pack(k));
+        place.set_pack(k, (path_m.pack(k) - table_.steps.first_m) * table_.steps.steps_per_m);
+    });
+    const double step = std::floor(place[0]);
+    const bool is_of_one_step =
+        step >= 0.0 && step < table_.steps.count &&
+        std::ranges::all_of(place.lane, [&](double p) { return p >= step && p < step + 1.0; });
+    const LampSignal& signal = *strobe.signal;
+    if (is_of_one_step && signal.highlight.empty()) {
+        add_of_step(signal.diffuse[0], step, place, diffuse, light);
+        return;
+    }
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        FloorArrival arrived{.diffuse = diffuse[k], .path_m = path_m[k]};
+        if (rig_.seafloor.phong != 0.0 && arrived.diffuse != 0.0)
+            arrived.highlight =
+                lamp.share * I[k] *
+                highlight_per_area(rig_.seafloor, lamp.floor_m, rays.down[k], along[k], length[k]);
+        PlaceLight one;
+        shine(signal, 0, arrived, one);
+        for (std::size_t c = 0; c < kChannels; ++c) light.signals[c][k] += one.signals[c];
+        light.is_before |= one.is_before;
+        light.is_beyond |= one.is_beyond;
+    }
+}
+
 void FloorLight::add(const FloorLamp& lamp,
                      const PlaceRays& rays,
                      bool looks,
@@ -138,16 +238,9 @@ void FloorLight::add(const FloorLamp& lamp,
     const Vector3d* const middle = rays[0].sees_floor() ? &at_nodes[0].towards : nullptr;
     for (std::size_t j = 0; j < rays_.nodes(); ++j) {
         at_nodes[j] = arrive(lamp, rays[j], j == 0 ? nullptr : middle);
-        if (at_nodes[j].diffuse == 0.0) continue;
-        const double place = place_in_table(at_nodes[j].path_m);
-        light.is_before |= place < 0.0;
-        light.is_beyond |= place >= table_.steps.count;
-        if (place < 0.0 || place >= table_.steps.count) continue;
-        last_place = place;
         const std::size_t node = rays_.nodes() > 1 ? kNodeOrder[j] : 0;
-        add_signal(signal.diffuse[node], place, at_nodes[j].diffuse, light.signals);
-        if (signal.highlight.empty()) continue;
-        add_signal(signal.highlight[node], place, at_nodes[j].highlight, light.signals);
+        const double place = shine(signal, node, at_nodes[j], light);
+        if (place >= 0.0) last_place = place;
     }
     if (!looks || last_place < 0.0) return;
     double diffuse = 0.0;

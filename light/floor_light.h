@@ -25,10 +25,13 @@
 //
 //   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
 //
+// Of a camera without a port, places are asked for in lanes (base/lanes.h).
+//
 // A beam's edge, which dispersion spreads over several pixels, is sharp and stands where the middle
 // index has it.
 #pragma once
 
+#include "base/lanes.h"
 #include "light/beam_light.h"
 #include "light/floor_arrival.h"
 #include "light/floor_ray.h"
@@ -68,6 +71,10 @@ class CameraRays {
     [[nodiscard]] std::size_t nodes() const { return has_port_ ? kIndexNodes : 1; }
     // At pixels' centres and between them. Those that are looked along only if asked for.
     [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
+    // Directions in air.
+    [[nodiscard]] LaneVector in_air(const Lanes& column, const Lanes& row) const {
+        return table_.look(column, row);
+    }
 
   private:
     bool has_port_;  // whose rays differ
@@ -90,6 +97,23 @@ struct PlaceLight {
     bool is_beyond = false;  // or longer
 };
 
+// Places that a camera without a port sees: its rays start at the pupil.
+struct LaneRays {
+    LaneVector direction;
+    Lanes down;  // 0 where no floor is seen
+};
+struct LaneLight {
+    std::array<Lanes, kChannels> signals{};
+    bool is_before = false;  // of any lane
+    bool is_beyond = false;
+
+    [[nodiscard]] PlaceLight of_lane(std::size_t k) const {
+        return {.signals = {signals[0][k], signals[1][k], signals[2][k]},
+                .is_before = is_before,
+                .is_beyond = is_beyond};
+    }
+};
+
 class FloorLight {
   public:
     // For one sled of the rig, whose pose this is. All but the sled must outlive it.
@@ -109,6 +133,8 @@ class FloorLight {
     }
     // Adds what a lamp gives, with its doubts where the rays were looked along.
     void add(const FloorLamp& lamp, const PlaceRays& rays, bool looks, PlaceLight& light) const;
+    [[nodiscard]] LaneRays rays_at(const Lanes& column, const Lanes& row) const;
+    void add(const FloorLamp& lamp, const LaneRays& rays, LaneLight& light) const;
     // By a ray for each wavelength, and for all these lamps.
     [[nodiscard]] Signals dispersed(std::span<const FloorLamp* const> lamps,
                                     double column,
@@ -126,6 +152,11 @@ class FloorLight {
     [[nodiscard]] FloorArrival arrive(const FloorLamp& lamp,
                                       const FloorRay& ray,
                                       const Eigen::Vector3d* from) const;
+    // Adds what arrives, by the table of an index node, at a place that is returned; -1: none.
+    double shine(const LampSignal& signal,
+                 std::size_t node,
+                 const FloorArrival& arrived,
+                 PlaceLight& light) const;
     [[nodiscard]] double place_in_table(double path_m) const {
         return (path_m - table_.steps.first_m) * table_.steps.steps_per_m;
     }
@@ -134,6 +165,7 @@ class FloorLight {
     const SignalTable& table_;
     const CameraRays& rays_;
     Plane floor_;
+    double pupil_m_;  // its height
     std::vector<StrobeLight> strobes_;
     std::vector<FloorLamp> lamps_;
 };

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "image/image_size.h"
+#include "rig/camera/lens.h"
 #include "rig/geometry.h"
 
 #include <algorithm>
@@ -138,6 +139,26 @@ void RayTable::look(double column, double row, std::span<WaterRay> rays) const {
         }
         rays[k] = {.origin_m = sum.head<3>(), .direction = sum.tail<3>().matrix().normalized()};
     }
+}
+
+LaneVector RayTable::look(const Lanes& column, const Lanes& row) const {
+    LaneVector directions;
+    if (rig_.camera.lens || rig_.camera.port) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            WaterRay ray;
+            look(column[k], row[k], {&ray, 1});
+            for (std::size_t i = 0; i < 3; ++i)
+                directions[i][k] = ray.direction(static_cast<Eigen::Index>(i));
+        }
+        return directions;
+    }
+    for_each_pack([&](std::size_t k) {
+        PackVector way = pinhole_way(rig_.camera, column.pack(k), row.pack(k));
+        const Pack per_length = 1.0 / root(dot(way, way));
+        for (Pack& along : way) along *= per_length;
+        set_pack(directions, k, way);
+    });
+    return directions;
 }
 
 }  // namespace aphotic

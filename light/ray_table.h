@@ -8,6 +8,7 @@
 // be as many as pixels, each ray is computed by itself.
 #pragma once
 
+#include "base/lanes.h"
 #include "rig/rig.h"
 
 #include <array>
@@ -26,6 +27,8 @@ class RayTable {
 
     // Of the first of the wavelengths; pixels' centres are at .5.
     void look(double column, double row, std::span<WaterRay> rays) const;
+    // Directions of the first wavelength.
+    [[nodiscard]] LaneVector look(const Lanes& column, const Lanes& row) const;
 
     [[nodiscard]] bool has_nodes() const { return !nodes_.empty(); }
 

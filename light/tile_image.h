@@ -13,14 +13,16 @@
 //   Piece, Group    of light: what may be smooth in one tile and not in another, and pieces that
 //                   are interpolated together
 //   Place, Found    what all pieces have in common at a place; a group's light there, `signals`
+//   kLanes          places that are asked for at a time
 //   planes()        of the image
 //   split(tile, pieces, rest)       groups that may be smooth in a tile; what is not goes on
 //   all_of(pieces)                  one group
 //   give_back(group, rest)          a group that is not smooth goes on
-//   place(column, row, is_exact)    is_exact: not a point of a polynomial
-//   find(group, place, is_exact)
+//   place(at, is_exact)             of kLanes; is_exact: not points of polynomials
+//   find(group, place, is_exact)    Found of all these
+//   of_lane(found, k)               of one of them: `signals`, and what is asked for here
 //   is_within(found)                whether it may be interpolated
-//   beside(place, signals)          adds to a signal what is none of these pieces
+//   beside(place, signals)          adds to a signal what is none of these pieces; of one lane
 //   is_right(found, check)          whether a polynomial is, at one place
 //   settle(group, column, row, place, signals, found)   the last word on a pixel
 #pragma once
@@ -54,6 +56,9 @@ struct Tile {
 };
 [[nodiscard]] std::array<Tile, 4> quarters(const Tile& tile);
 
+// A place of an image: column and row, of pixels' corners.
+using PixelPlace = std::array<double, 2>;
+
 // A polynomial at a place between its points.
 struct TileCheck {
     PlaceSignals told{};
@@ -63,6 +68,8 @@ struct TileCheck {
 
 // What most have to say of it.
 struct TileLight {
+    static constexpr std::size_t kLanes = 1;
+    static const auto& of_lane(const auto& found, std::size_t /*k*/) { return found; }
     static bool is_within(const auto& /*found*/) { return true; }
     static void beside(const auto& /*place*/, PlaceSignals& /*signals*/) {}
     static void settle(const auto&... /*all*/) {}
@@ -121,7 +128,6 @@ class TilePainter {
         typename Light::Group group;
         Nodes nodes;  // by plane
         bool is_right = true;
-        typename Light::Found found{};
         PlaceSignals last_degrees{};
     };
     using Polynomials = std::vector<Polynomial>;
@@ -130,11 +136,21 @@ class TilePainter {
         return std::ranges::none_of(all, &Polynomial::is_right);
     }
 
-    [[nodiscard]] typename Light::Place place_in(const Tile& tile,
-                                                 double x,
-                                                 double y,
-                                                 bool is_exact) const {
-        return light_.place(tile.column + x + 0.5, tile.row + y + 0.5, is_exact);
+    static constexpr std::size_t kLanes = Light::kLanes;
+
+    // Of as many of a tile's places as there are from the first, which at(k) has in pixels from its
+    // first one's centre; the last of them again for lanes that have none.
+    [[nodiscard]] typename Light::Place places_in(const Tile& tile,
+                                                  std::size_t first,
+                                                  std::size_t count,
+                                                  const auto& at,
+                                                  bool is_exact) const {
+        std::array<PixelPlace, kLanes> places;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const auto [x, y] = at(std::min(first + lane, count - 1));
+            places[lane] = {tile.column + x + 0.5, tile.row + y + 0.5};
+        }
+        return light_.place(places, is_exact);
     }
 
     [[nodiscard]] float& sample(std::size_t plane, const Tile& tile, int x, int y) {
@@ -142,45 +158,59 @@ class TilePainter {
     }
 
     void take_nodes(const Tile& tile, Polynomials& all) {
+        constexpr std::size_t kNodes = std::size_t{kTilePoints} * kTilePoints;
         const TileAxis& across = tile_axis(tile.width);
         const TileAxis& down = tile_axis(tile.height);
-        for (int k = 0; k < kTilePoints * kTilePoints && !none_is_right(all); ++k) {
-            const int i = k % kTilePoints;
-            const int j = k / kTilePoints;
-            const auto place = place_in(tile,
-                                        across.points_px[static_cast<std::size_t>(i)],
-                                        down.points_px[static_cast<std::size_t>(j)],
-                                        false);
+        const auto at = [&](std::size_t k) {
+            return PixelPlace{across.points_px[k % kTilePoints], down.points_px[k / kTilePoints]};
+        };
+        for (std::size_t k = 0; k < kNodes && !none_is_right(all); k += kLanes) {
+            const auto places = places_in(tile, k, kNodes, at, false);
             for (Polynomial& one : all) {
-                const auto found = light_.find(one.group, place, false);
-                one.is_right &= light_.is_within(found);
-                for (std::size_t c = 0; c < planes_.size(); ++c)
-                    one.nodes[c](j, i) = found.signals[c];
+                const auto found = light_.find(one.group, places, false);
+                for (std::size_t node = k; node < std::min(k + kLanes, kNodes); ++node) {
+                    const auto& of_node = Light::of_lane(found, node - k);
+                    one.is_right &= light_.is_within(of_node);
+                    for (std::size_t c = 0; c < planes_.size(); ++c)
+                        one.nodes[c](static_cast<Eigen::Index>(node / kTilePoints),
+                                     static_cast<Eigen::Index>(node % kTilePoints)) =
+                            of_node.signals[c];
+                }
             }
         }
     }
 
-    void check(const Tile& tile, int i, int j, Polynomials& all) {
+    void check(const Tile& tile, std::size_t first, Polynomials& all) {
         const TileAxis& across = tile_axis(tile.width);
         const TileAxis& down = tile_axis(tile.height);
-        const double x = across.gaps_px[static_cast<std::size_t>(i)];
-        const double y = down.gaps_px[static_cast<std::size_t>(j)];
-        const auto place = place_in(tile, x, y, true);
-        PlaceSignals signals{};
-        light_.beside(place, signals);
-        for (Polynomial& one : all) one.found = light_.find(one.group, place, true);
-        for (std::size_t c = 0; c < planes_.size(); ++c) {
-            signals[c] += static_cast<double>(sample(
-                c, tile, static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))));
-            for (const Polynomial& one : all) signals[c] += one.found.signals[c];
-        }
-        for (Polynomial& one : all) {
-            TileCheck check{.told = {}, .last_degrees = one.last_degrees, .signals = signals};
+        const auto at = [&](std::size_t k) {
+            const auto [i, j] = kTileChecks[k];
+            return PixelPlace{across.gaps_px[static_cast<std::size_t>(i)],
+                              down.gaps_px[static_cast<std::size_t>(j)]};
+        };
+        const auto places = places_in(tile, first, kTileChecks.size(), at, true);
+        std::vector<typename Light::Found> found;
+        for (const Polynomial& one : all) found.push_back(light_.find(one.group, places, true));
+        for (std::size_t k = first; k < std::min(first + kLanes, kTileChecks.size()); ++k) {
+            const auto [x, y] = at(k);
+            PlaceSignals signals{};
+            light_.beside(places, signals);
             for (std::size_t c = 0; c < planes_.size(); ++c) {
-                check.told[c] =
-                    down.to_gaps.row(j) * one.nodes[c] * across.to_gaps.row(i).transpose();
+                signals[c] += static_cast<double>(sample(
+                    c, tile, static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))));
+                for (const auto& one : found)
+                    signals[c] += Light::of_lane(one, k - first).signals[c];
             }
-            one.is_right = one.is_right && light_.is_right(one.found, check);
+            const auto [i, j] = kTileChecks[k];
+            for (std::size_t one = 0; one < all.size(); ++one) {
+                Polynomial& told = all[one];
+                TileCheck check{.told = {}, .last_degrees = told.last_degrees, .signals = signals};
+                for (std::size_t c = 0; c < planes_.size(); ++c)
+                    check.told[c] =
+                        down.to_gaps.row(j) * told.nodes[c] * across.to_gaps.row(i).transpose();
+                told.is_right =
+                    told.is_right && light_.is_right(Light::of_lane(found[one], k - first), check);
+            }
         }
     }
 
@@ -190,8 +220,8 @@ class TilePainter {
             for (std::size_t c = 0; c < planes_.size(); ++c)
                 one.last_degrees[c] = last_degrees(one.nodes[c]);
         }
-        for (const auto& [across, down] : kTileChecks)
-            if (!none_is_right(all)) check(tile, across, down, all);
+        for (std::size_t k = 0; k < kTileChecks.size() && !none_is_right(all); k += kLanes)
+            check(tile, k, all);
         if (none_is_right(all)) return;
         for (std::size_t c = 0; c < planes_.size(); ++c) {
             TileNodes sum = TileNodes::Zero();
@@ -208,25 +238,39 @@ class TilePainter {
     void paint_directly(const Tile& tile, const typename Light::Group& all) {
         const int first = std::max(0, rows_.first - tile.row);
         const int end = std::min(tile.height, rows_.first + rows_.count - tile.row);
+        const auto width = static_cast<std::size_t>(tile.width);
         for (int y = first; y < end; ++y) {
-            for (int x = 0; x < tile.width; ++x) {
-                const auto place = place_in(tile, x, y, true);
-                auto found = light_.find(all, place, true);
-                PlaceSignals signals{};
-                for (std::size_t c = 0; c < planes_.size(); ++c)
-                    signals[c] = static_cast<double>(sample(c, tile, x, y));
-                light_.settle(
-                    all, tile.column + x + 0.5, tile.row + y + 0.5, place, signals, found);
-                for (std::size_t c = 0; c < planes_.size(); ++c)
-                    sample(c, tile, x, y) = static_cast<float>(signals[c] + found.signals[c]);
+            const auto at = [&](std::size_t x) {
+                return PixelPlace{static_cast<double>(x), static_cast<double>(y)};
+            };
+            for (std::size_t left = 0; left < width; left += kLanes) {
+                const auto places = places_in(tile, left, width, at, true);
+                const auto found = light_.find(all, places, true);
+                for (std::size_t x = left; x < std::min(left + kLanes, width); ++x)
+                    settle(
+                        tile, static_cast<int>(x), y, all, places, Light::of_lane(found, x - left));
             }
         }
+    }
+
+    void settle(const Tile& tile,
+                int x,
+                int y,
+                const typename Light::Group& all,
+                const typename Light::Place& places,
+                auto found) {
+        for (std::size_t c = 0; c < planes_.size(); ++c)
+            so_far_[c] = static_cast<double>(sample(c, tile, x, y));
+        light_.settle(all, tile.column + x + 0.5, tile.row + y + 0.5, places, so_far_, found);
+        for (std::size_t c = 0; c < planes_.size(); ++c)
+            sample(c, tile, x, y) = static_cast<float>(so_far_[c] + found.signals[c]);
     }
 
     Light& light_;
     Tile whole_;
     ImageRows rows_;
     std::vector<TilePlane> planes_;
+    PlaceSignals so_far_{};  // of the pixel that is settled: to zero it for each takes as long
 };
 
 // All pieces, by a thread for each of these lights.

@@ -208,7 +208,7 @@ class VeilTiles : public TileLight {
                                            Group& rest) const {
         std::vector<FloorRay> rays;
         for (const auto& [x, y] : tile_places(tile.width, tile.height))
-            rays.push_back(place(tile.column + x + 0.5, tile.row + y + 0.5, false)[0]);
+            rays.push_back(place({{{tile.column + x + 0.5, tile.row + y + 0.5}}}, false)[0]);
         std::vector<Group> groups;
         for (const std::size_t part : parts) {
             const Eigen::Vector3d& lamp_m =
@@ -227,8 +227,8 @@ class VeilTiles : public TileLight {
     static const Group& all_of(const Group& parts) { return parts; }
     static void give_back(const Group& parts, Group& rest) { rest.push_back(parts.front()); }
 
-    [[nodiscard]] PlaceRays place(double column, double row, bool /*is_exact*/) const {
-        return rays_.at(column, row, plane_, false);
+    [[nodiscard]] PlaceRays place(const std::array<PixelPlace, 1>& at, bool /*is_exact*/) const {
+        return rays_.at(at[0][0], at[0][1], plane_, false);
     }
 
     [[nodiscard]] Found find(const Group& parts, const PlaceRays& rays, bool /*is_exact*/) {

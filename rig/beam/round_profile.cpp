@@ -18,6 +18,7 @@ using Fit = Eigen::Matrix<double, kProfileOrder, 1>;
 
 constexpr int kMostHalvings = 24;
 constexpr double kGrazing_rad = 0.5 * std::numbers::pi;
+constexpr double kMostChord = 2.0;  // behind the lamp
 
 double chord_of(double theta_rad) {
     return 2.0 * std::sin(0.5 * theta_rad);
@@ -161,6 +162,22 @@ double RoundProfile::value(const Piece& piece, double q) {
 double RoundProfile::at(double cosine) const {
     const auto q = chord(cosine);
     return q ? value(pieces_[piece_at(*q)], *q) : 0.0;
+}
+
+Lanes RoundProfile::at(const Lanes& cosine) const {
+    Lanes I;
+    for_each_pack([&](std::size_t k) {
+        const Pack x = cosine.pack(k);
+        Pack q = root(2.0 - 2.0 * x);
+        if (has_window_) {
+            const Pack cos2 = 1.0 - window_index_ * window_index_ * (1.0 - x * x);
+            q = root(2.0 - 2.0 * root(cos2));
+            where(x <= 0.0 || cos2 <= 0.0, q) = kMostChord;
+        }
+        I.set_pack(k, q);
+    });
+    for (double& q : I.lane) q = value(pieces_[piece_at(q)], q);
+    return I;
 }
 
 double RoundProfile::continued(double cosine, double cosine_from) const {

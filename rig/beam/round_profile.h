@@ -13,6 +13,7 @@
 // that is asked for as though an edge were not there goes on by its own region's last polynomial.
 #pragma once
 
+#include "base/lanes.h"
 #include "rig/beam/beam.h"
 
 #include <array>
@@ -32,6 +33,7 @@ class RoundProfile {
 
     // By the cosine off the axis in water.
     [[nodiscard]] double at(double cosine) const;
+    [[nodiscard]] Lanes at(const Lanes& cosine) const;
     // As though no edge lay between it and the direction of another cosine.
     [[nodiscard]] double continued(double cosine, double cosine_from) const;
 

@@ -62,10 +62,7 @@ bool shows(const Camera& camera, const Vector3d& point_m, double factor) {
 
 Vector3d direction_in_air(const Camera& camera, double column, double row) {
     if (camera.lens) return seen_by_lens(*camera.lens, {column, row});
-    return Vector3d((0.5 * camera.height_px - row) * camera.pixel_pitch_m,
-                    (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
-                    camera.focal_length_m)
-        .normalized();
+    return Vector3d(pinhole_way(camera, column, row).data()).normalized();
 }
 
 double half_view_rad(const Camera& camera) {

@@ -7,13 +7,13 @@
 // or what its calibration tells (lens_model.h). In the sled's frame: the top row forward, the right
 // column starboard. Pixel (0, 0)'s centre is (0.5, 0.5).
 //
-// Who needs a lens's rays asks here. Pinholes are known besides: to scene_gen/rig_sdl.h, which says
-// them to POV-Ray, and to lightmap/row_light.h, whose inner loop has the formula. The reference has
-// lenses of its own (validation/).
+// Who needs a lens's rays asks here. Pinholes are known besides to scene_gen/rig_sdl.h, which says
+// them to POV-Ray. The reference has lenses of its own (validation/).
 #pragma once
 
 #include "rig/camera/camera.h"
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -22,6 +22,14 @@ namespace aphotic {
 // Unit vector of the point (column, row) of the image. Beyond the image it may be none, which is an
 // InputError.
 [[nodiscard]] Eigen::Vector3d direction_in_air(const Camera& camera, double column, double row);
+
+// Of a camera without a lens, of any length; T may be several numbers at a time.
+template <typename T>
+[[nodiscard]] std::array<T, 3> pinhole_way(const Camera& camera, const T& column, const T& row) {
+    return {(0.5 * camera.height_px - row) * camera.pixel_pitch_m,
+            (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
+            T(camera.focal_length_m)};
+}
 
 // The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.
 [[nodiscard]] double half_view_rad(const Camera& camera);

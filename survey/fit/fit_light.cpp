@@ -298,7 +298,7 @@ void light_floor(const Scene& scene,
                 const LampJet& lamp = scene.lamps()[lit.strobe];
                 const Vector3<Jet> V = towards(lamp.position_m, ray);
                 const Jet length = sqrt(V.squaredNorm());
-                const Arriving<Jet> way = arriving(lamp.height_m, ray, length);
+                const Arriving<Jet> way = arriving(lamp.height_m, ray.height_m, ray.down, length);
                 lit.w = lamp.into_frame * V / length;
                 scene.look(lit, beam);
                 const Jet spread =

@@ -53,6 +53,19 @@ TEST(RoundProfile, IsTheBeamAtAnyAngle) {
     }
 }
 
+TEST(RoundProfile, IsTheSameInLanes) {
+    for (const Beam& beam : round_beams()) {
+        const RoundProfile profile(beam);
+        for (double first = -1.0; first < 1.0; first += 0.02) {
+            Lanes cosines;
+            for (std::size_t k = 0; k < kLanes; ++k)
+                cosines[k] = first + 0.0025 * static_cast<double>(k);
+            const Lanes found = profile.at(cosines);
+            for (std::size_t k = 0; k < kLanes; ++k) ASSERT_EQ(found[k], profile.at(cosines[k]));
+        }
+    }
+}
+
 // A lamp's light may be as dim beside its axis as cos^60: the digits of what there is count.
 TEST(RoundProfile, HasTheDigitsOfDimLight) {
     Beam beam{
