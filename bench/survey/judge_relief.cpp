@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// judge_relief MASKS NAME=DIR ...: how even corrections leave a sea floor with relief that reflects
+// alike everywhere: the rms departure from the survey's median in each channel, over the pixels
+// that are 0 in MASKS, the folder of the correction whose masks count. Files are EXR, by one name
+// in all folders.
+//
+//   --depths DIR --noise SIGMA --write DIR   besides, or instead, depth maps with noise  [m]
+//   --picture FILE --show IMAGE              the corrections of one image side by side, each with
+//                                            its own exposure and white balance
+#include "base/error.h"
+#include "base/npy_file.h"
+#include "base/upper_median.h"
+#include "image/any_image.h"
+#include "image/exr.h"
+#include "survey/relief/depth_map.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kRgb{"R", "G", "B"};
+
+struct Options {
+    fs::path masks;
+    std::vector<std::string> corrections;  // NAME=DIR
+    fs::path depths;
+    double noise_m = 0.0;
+    fs::path noisy;
+    fs::path picture;
+    std::string show;
+};
+
+struct Image {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<float> planes{};
+};
+
+Image read(const fs::path& file) {
+    ExrReader exr(file);
+    return {.width_px = exr.width_px(), .height_px = exr.height_px(), .planes = exr.planes(kRgb)};
+}
+
+std::vector<fs::path> images_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".exr") files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+void write_noisy(const Options& options) {
+    std::mt19937 engine(1);
+    std::normal_distribution<float> noise(0.0F, static_cast<float>(options.noise_m));
+    fs::create_directories(options.noisy);
+    for (const fs::path& file : images_in(options.depths)) {
+        DepthMap map = read_depth_map(file);
+        for (float& depth_m : map.depth_m) depth_m += noise(engine);
+        write_npy(options.noisy / (file.stem().string() + ".npy"),
+                  {static_cast<std::size_t>(map.height_px), static_cast<std::size_t>(map.width_px)},
+                  map.depth_m);
+    }
+}
+
+// Of the masks' files, which end in .mask.png or lie under mask/.
+std::vector<float> mask_of(const Options& options, const fs::path& image) {
+    const fs::path file = options.masks / "mask" / (image.stem().string() + ".png");
+    return open_any_image(file).samples(0);
+}
+
+std::array<double, 3> medians_of(const fs::path& folder, const Options& options) {
+    std::array<double, 3> medians{};
+    for (std::size_t c = 0; c < medians.size(); ++c) {
+        std::vector<float> all;
+        for (const fs::path& file : images_in(folder)) {
+            const Image image = read(file);
+            const std::vector<float> mask = mask_of(options, file);
+            for (std::size_t i = 0; i < mask.size(); ++i)
+                if (mask[i] == 0.0F) all.push_back(image.planes[c * mask.size() + i]);
+        }
+        medians[c] = upper_median(all);
+    }
+    return medians;
+}
+
+void judge(const std::string& name, const fs::path& folder, const Options& options) {
+    const std::array<double, 3> medians = medians_of(folder, options);
+    std::array<double, 3> squares{};
+    double pixels = 0.0;
+    for (const fs::path& file : images_in(folder)) {
+        const Image image = read(file);
+        const std::vector<float> mask = mask_of(options, file);
+        for (std::size_t i = 0; i < mask.size(); ++i) {
+            if (mask[i] != 0.0F) continue;
+            pixels += 1.0;
+            for (std::size_t c = 0; c < squares.size(); ++c)
+                squares[c] += std::pow(image.planes[c * mask.size() + i] / medians[c] - 1.0, 2);
+        }
+    }
+    constexpr double kPerCent = 100.0;
+    fmt::print("| {} |", name);
+    for (const double square : squares)
+        fmt::print(" {:.2f} |", kPerCent * std::sqrt(square / pixels));
+    fmt::print("\n");
+}
+
+// Medians become grey.
+void add_column(const fs::path& folder, const Options& options, std::vector<Image>& columns) {
+    constexpr double kGrey = 0.35;
+    constexpr double kGamma = 1.0 / 2.2;
+    Image image = read(folder / (options.show + ".exr"));
+    const std::array<double, 3> medians = medians_of(folder, options);
+    const std::size_t pixels = image.planes.size() / 3;
+    for (std::size_t i = 0; i < image.planes.size(); ++i) {
+        const double share = kGrey * image.planes[i] / medians.at(i / pixels);
+        image.planes[i] = static_cast<float>(std::pow(std::clamp(share, 0.0, 1.0), kGamma));
+    }
+    columns.push_back(std::move(image));
+}
+
+void write_picture(const std::vector<Image>& columns, const fs::path& file) {
+    constexpr int kGap_px = 4;
+    const int width_px = columns.front().width_px;
+    const int height_px = columns.front().height_px;
+    const auto whole_px =
+        static_cast<std::size_t>(columns.size()) * static_cast<std::size_t>(width_px + kGap_px) -
+        kGap_px;
+    std::vector<float> planes(3 * whole_px * static_cast<std::size_t>(height_px), 1.0F);
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        for (std::size_t row = 0; row < 3 * static_cast<std::size_t>(height_px); ++row) {
+            const auto from = columns[n].planes.begin() +
+                              static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(width_px));
+            std::copy(from,
+                      from + width_px,
+                      planes.begin() +
+                          static_cast<std::ptrdiff_t>(
+                              row * whole_px + n * static_cast<std::size_t>(width_px + kGap_px)));
+        }
+    }
+    write_any_image(file,
+                    {.width_px = static_cast<int>(whole_px),
+                     .height_px = height_px,
+                     .channels = kRgb,
+                     .planes = planes,
+                     .type = SampleType::Bits8,
+                     .compression = Compression::Small,
+                     .is_srgb = true});
+}
+
+void run(const Options& options) {
+    if (!options.noisy.empty()) write_noisy(options);
+    if (options.corrections.empty()) return;
+    fmt::print("| correction | R | G | B |\n|---|---|---|---|\n");
+    std::vector<Image> columns;
+    for (const std::string& words : options.corrections) {
+        const std::size_t equals = words.find('=');
+        if (equals == std::string::npos) throw InputError("found \"{}\"; allowed: NAME=DIR", words);
+        judge(words.substr(0, equals), words.substr(equals + 1), options);
+        if (!options.picture.empty()) add_column(words.substr(equals + 1), options, columns);
+    }
+    if (!columns.empty()) write_picture(columns, options.picture);
+}
+
+}  // namespace
+}  // namespace aphotic
+
+int main(int argc, char** argv) {
+    CLI::App app("How even corrections leave a sea floor with relief");
+    aphotic::Options options;
+    app.add_option("MASKS", options.masks)->required();
+    app.add_option("CORRECTIONS", options.corrections);
+    app.add_option("--depths", options.depths);
+    app.add_option("--noise", options.noise_m);
+    app.add_option("--write", options.noisy);
+    app.add_option("--picture", options.picture);
+    app.add_option("--show", options.show);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        aphotic::run(options);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "judge_relief: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images of a step of 0.3 m, corrected by depth maps of each kind: one cosine lamp 0.3 m ahead of
+// the camera, in water that absorbs nothing, so that the signal is z^2/d^4 in closed form.
+#include "base/npy_file.h"
+#include "image/exr.h"
+#include "support/command_test.h"
+#include "support/exr_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace aphotic::relief_test {
+namespace {
+
+constexpr int kWidth_px = 64;
+constexpr int kHeight_px = 48;
+constexpr double kFocal_px = 100.0;
+constexpr double kLamp_m = 0.3;  // ahead, up the image
+constexpr double kEven = 1e-4;   // of a signal's table, floats and cells
+constexpr double kUneven = 0.2;  // what a plane leaves: 0.75
+constexpr const char* kRig = R"(title = "step"
+[sled]
+altitude_m = 2.0
+[camera]
+resolution = [64, 48]
+pixel_pitch_um = 100.0
+focal_length_mm = 10.0
+range_nm = [400, 700]
+response = "nikon-d5100"
+[water]
+multiple = 0
+[seafloor]
+[beam.b]
+cones = [{ part = "all", half_angle_deg = 90, weight = 1 }]
+[[strobe]]
+name = "lamp"
+position_m = [0.3, 0.0, 0.0]
+direction = [0.0, 0.0, 1.0]
+beam = "b"
+)";
+
+double step_m(int column) {
+    return column < kWidth_px / 2 ? 2.0 : 2.3;
+}
+
+class CommandRelief : public CommandTest {
+  protected:
+    CommandRelief() {
+        write_file(path("rig.toml"), kRig);
+        write_file(path("nav.csv"), "image,altitude_m,pitch_deg,roll_deg\nstep.exr,2.0,0,0\n");
+        std::vector<float> planes;
+        for (int c = 0; c < 3; ++c) {
+            for (int row = 0; row < kHeight_px; ++row) {
+                for (int column = 0; column < kWidth_px; ++column)
+                    planes.push_back(static_cast<float>(signal(column, row)));
+            }
+        }
+        write_exr(path("step.exr"), kWidth_px, planes);
+        write_depths("axis", [](int column, int /*row*/) { return step_m(column); });
+    }
+    static double signal(int column, int row) {
+        const double z = step_m(column);
+        const double ahead = z * (0.5 * kHeight_px - row - 0.5) / kFocal_px - kLamp_m;
+        const double across = z * (column + 0.5 - 0.5 * kWidth_px) / kFocal_px;
+        return z * z / std::pow(ahead * ahead + across * across + z * z, 2);
+    }
+    void write_depths(const std::string& folder,
+                      const std::function<double(int column, int row)>& depth_m) const {
+        std::filesystem::create_directories(path(folder));
+        std::vector<float> depths;
+        for (int row = 0; row < kHeight_px; ++row)
+            for (int column = 0; column < kWidth_px; ++column)
+                depths.push_back(static_cast<float>(depth_m(column, row)));
+        write_npy(path(folder) / "step.npy", {kHeight_px, kWidth_px}, depths);
+    }
+    // The largest departure from the image's middle.
+    [[nodiscard]] double unevenness(const std::string& options) const {
+        std::filesystem::remove_all(path("out"));
+        done(Arguments("correct step.exr --rig rig.toml --gain 1 --format exr --mask -o out " +
+                       options));
+        const std::vector<float> green = read_exr(path("out/step.exr"), {"G"});
+        const double middle = green[green.size() / 2 + kWidth_px / 4];
+        double most = 0.0;
+        for (const float sample : green) most = std::max(most, std::abs(sample / middle - 1.0));
+        return most;
+    }
+};
+
+}  // namespace
+
+TEST_F(CommandRelief, AStepIsEvenByItsDepthMapAlone) {
+    EXPECT_GT(unevenness("--nav nav.csv"), kUneven);
+    EXPECT_LT(unevenness("--nav nav.csv --depth-map axis"), kEven);
+    EXPECT_LT(unevenness("--depth-map axis"), kEven);
+    EXPECT_LT(unevenness("--depth-map axis/step.npy"), kEven);
+    EXPECT_LT(unevenness("--nav nav.csv --depth-map axis --normals floor"), kEven);
+    write_depths("ray", [](int column, int row) {
+        const double x = (column + 0.5 - 0.5 * kWidth_px) / kFocal_px;
+        const double y = (row + 0.5 - 0.5 * kHeight_px) / kFocal_px;
+        return step_m(column) * std::hypot(1.0, x, y);
+    });
+    EXPECT_LT(unevenness("--depth-map ray --depth-is ray"), kEven);
+    EXPECT_GT(unevenness("--depth-map ray"), 0.5 * kUneven);
+    write_depths("mm", [](int column, int /*row*/) { return 1000.0 * step_m(column); });
+    EXPECT_LT(unevenness("--depth-map mm --depth-unit mm"), kEven);
+}
+
+TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
+    write_depths("mm", [](int column, int /*row*/) { return 1000.0 * step_m(column); });
+    write_depths("holes", [](int /*column*/, int /*row*/) { return 0.0; });
+    std::filesystem::create_directories(path("none"));
+    const std::string correct = "correct step.exr --rig rig.toml --format exr -o out ";
+    const Cases cases{
+        {Arguments(correct + "--depth-map mm"),
+         "found depths of 2300 m in the median of its depth map, and an altitude of 2 m"},
+        {Arguments(correct + "--depth-map holes"), "found no depth in any of 3072 pixels"},
+        {Arguments(correct + "--depth-map none"), "found no depth map of it in none"},
+        {Arguments(correct + "--depth-map axis --normals floor"), "--normals floor needs --nav"},
+        {Arguments(correct), "--rig needs --nav"},
+        {Arguments("correct step.exr --map step.exr --depth-map axis --format exr -o out"),
+         "--depth-map need --rig"}};
+    for (const auto& [arguments, why] : cases) refused(arguments, why);
+}
+
+}  // namespace aphotic::relief_test
