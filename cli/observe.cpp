@@ -55,6 +55,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
     const std::optional<Rig> rig = rig_of(input);
     Survey survey = read_survey(input, options.output, rig ? &*rig : nullptr);
     survey.navigation = read_navigation(input, survey.files, rig ? &*rig : nullptr);
+    if (!input.depth.place.empty()) survey.depth = input.depth;
     const Observation observation =
         observe(survey, options.observation, terminal_watch(input.strict));
     write_observation(options.output, observation);
@@ -82,6 +83,7 @@ Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
     add_images(app, options->input);
     add_navigation_options(app, options->input)->required();
+    add_depth_maps(app, options->input);
     add_option(app, "--output", options->output)->required();
     add_option(app, "--altitude", options->observation.altitude_m)->check(positive())->required();
     add_option(app, "--within", options->observation.within_m)->check(not_negative());

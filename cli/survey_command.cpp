@@ -154,7 +154,7 @@ CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input) {
     return nav;
 }
 
-void add_depth_options(CLI::App& app, SurveyInput& input) {
+CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input) {
     const OptionGroup group(app, "Relief");
     constexpr double kMillimetre = 1e-3;
     DepthMaps& depth = input.depth;
@@ -162,15 +162,22 @@ void add_depth_options(CLI::App& app, SurveyInput& input) {
     const auto take = [&depth](const std::string& unit) {
         depth.unit_m = unit == "mm" ? kMillimetre : 1.0;
     };
-    CLI::Option* unit = add_option_function<std::string>(app, "--depth-unit", take)
-                            ->check(CLI::IsMember({"m", "mm"}));
-    CLI::Option* is = add_option(app, "--depth-is", depth.is)
-                          ->transform(word_of<DepthIs>(
-                              {{"axis", DepthIs::AlongAxis}, {"ray", DepthIs::AlongRay}}));
-    CLI::Option* normals = add_option(app, "--normals", depth.normals)
-                               ->transform(word_of<NormalsFrom>(
-                                   {{"depth", NormalsFrom::Depth}, {"floor", NormalsFrom::Floor}}));
-    for (CLI::Option* option : {unit, is, normals}) option->needs(maps);
+    add_option_function<std::string>(app, "--depth-unit", take)
+        ->check(CLI::IsMember({"m", "mm"}))
+        ->needs(maps);
+    return maps;
+}
+
+void add_depth_options(CLI::App& app, SurveyInput& input) {
+    CLI::Option* const maps = add_depth_maps(app, input);
+    const OptionGroup group(app, "Relief");
+    add_option(app, "--depth-is", input.depth.is)
+        ->transform(word_of<DepthIs>({{"axis", DepthIs::AlongAxis}, {"ray", DepthIs::AlongRay}}))
+        ->needs(maps);
+    add_option(app, "--normals", input.depth.normals)
+        ->transform(
+            word_of<NormalsFrom>({{"depth", NormalsFrom::Depth}, {"floor", NormalsFrom::Floor}}))
+        ->needs(maps);
 }
 
 void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white, bool has_map) {

@@ -49,7 +49,8 @@ void add_images(CLI::App& app, SurveyInput& input);
 void add_survey_rig(CLI::App& app, SurveyInput& input);
 // --nav and all that says how it is to be understood.
 CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
-// --depth-map and all that says how it is to be understood.
+// --depth-map and --depth-unit; and all that says how ranges are to be understood.
+CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input);
 void add_depth_options(CLI::App& app, SurveyInput& input);
 // --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
 // has_map: an image's exposure can be told by what it is divided by.

@@ -75,9 +75,8 @@ void write_noisy(const Options& options) {
     }
 }
 
-// Of the masks' files, which end in .mask.png or lie under mask/.
 std::vector<float> mask_of(const Options& options, const fs::path& image) {
-    const fs::path file = options.masks / "mask" / (image.stem().string() + ".png");
+    const fs::path file = options.masks / (image.stem().string() + ".mask.png");
     return open_any_image(file).samples(0);
 }
 

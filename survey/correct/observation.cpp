@@ -68,6 +68,7 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
 // Goes through the images in their order, and drops from the selection what cannot be used.
 struct Pass {
     const CameraNumbers& camera;
+    const std::optional<DepthMaps>& depth;
     const ObservationOptions& options;
     const RunWatch& watch;
     Selection& selection;
@@ -101,6 +102,20 @@ struct Pass {
         std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
     }
 
+    // Pixels whose own depth is not the altitude's, or not known.
+    void leave_out_relief(const ImageFile& file, RawImage& raw) const {
+        const DepthMap map =
+            resized(read_depth_map(depth_file(depth->place, file.source), depth->unit_m),
+                    raw.width_px,
+                    raw.height_px);
+        for (std::size_t i = 0; i < raw.samples.size(); ++i) {
+            const double off_m = std::abs(static_cast<double>(map.depth_m[i % map.depth_m.size()]) -
+                                          options.altitude_m);
+            if (!(off_m <= options.within_m))
+                raw.samples[i] = std::numeric_limits<float>::quiet_NaN();
+        }
+    }
+
     [[nodiscard]] ReadImage read(const ImageFile& file) const {
         SurveyImage taken = read_survey_image(file.source, camera);
         LightCells cells = light_cells(taken, {}, file);
@@ -108,6 +123,7 @@ struct Pass {
         if (std::ranges::any_of(taken.raw.samples, [](float s) { return std::isinf(s); }))
             throw InputError("a sample is infinite");
         if (options.normalise) divide_by_own_mean(taken.raw);
+        if (depth) leave_out_relief(file, taken.raw);
         return {.raw = std::move(taken.raw), .cells = std::move(cells)};
     }
 };
@@ -267,7 +283,7 @@ Observation observe(const Survey& survey,
     for (const ChosenImage& image : selection.images) files.push_back(image.file);
     observation.looks_wrong =
         suspicions_of(files, survey.camera, survey.navigation, options.jobs, watch);
-    Pass pass{survey.camera, options, watch, selection};
+    Pass pass{survey.camera, survey.depth, options, watch, selection};
     const auto drop = [&] { return drop_unlit(survey, selection, observation); };
     const Observed observed = options.average == Average::Mean
                                   ? running_mean(pass, drop)

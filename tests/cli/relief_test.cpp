@@ -90,8 +90,6 @@ class CommandRelief : public CommandTest {
     }
 };
 
-}  // namespace
-
 TEST_F(CommandRelief, AStepIsEvenByItsDepthMapAlone) {
     EXPECT_GT(unevenness("--nav nav.csv"), kUneven);
     EXPECT_LT(unevenness("--nav nav.csv --depth-map axis"), kEven);
@@ -126,4 +124,5 @@ TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
     for (const auto& [arguments, why] : cases) refused(arguments, why);
 }
 
+}  // namespace
 }  // namespace aphotic::relief_test
