@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -103,7 +104,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
     const std::string sides = shape[1];
     static const std::regex kNumber("[0-9]+");
     for (std::sregex_iterator side(sides.begin(), sides.end(), kNumber), end; side != end; ++side)
-        array.shape.push_back(std::stoul(side->str()));
+        array.shape.push_back(read_number<std::size_t>(side->str()).value_or(0));
     const std::size_t count = std::accumulate(
         array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>{});
     if (count * type->bytes != file.size() - start)

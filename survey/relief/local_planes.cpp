@@ -11,7 +11,9 @@ namespace aphotic {
 namespace {
 
 constexpr double kKnownShare = 0.25;
-constexpr double kWorse = 2.0;  // times the least rms, from where a window's own is left
+// Of the rms of n independent residuals, in its own standard deviations 1/sqrt(2 n).
+constexpr double kWorse = 4.0;
+constexpr double kConsistent = 3.0;  // a range's own residual, in rms
 
 // Sums over some pixels of their places (x, y, z = 1/Z). Of doubles: their variances are a
 // millionth of their squares at least.
@@ -89,6 +91,7 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
             window.is_known = sums.count >= std::max(4.0, kKnownShare * whole);
             if (!window.is_known) continue;
             window.plane = plane_through(sums);
+            window.count = sums.count;
             window.mean_per_m = sums.first(2) / sums.count;
         }
     }
@@ -112,8 +115,9 @@ void LocalPlanes::judge(int across, int down) {
             if (const Window* const near = window(x, y))
                 least = std::min(least, near->plane.rms_per_m);
     }
+    const double worse = 1.0 + kWorse / std::sqrt(2.0 * own.count);
     own.is_good =
-        own.is_known && own.plane.rms_per_m <= std::max(kWorse * least, kRounding * own.mean_per_m);
+        own.is_known && own.plane.rms_per_m <= std::max(worse * least, kRounding * own.mean_per_m);
 }
 
 std::optional<LocalPlane> LocalPlanes::at(int column, int row) const {
@@ -140,7 +144,31 @@ std::optional<LocalPlane> LocalPlanes::between(int column, int row) const {
     return found;
 }
 
+// The best of the windows of 3 x 3 pixels that have this one; none where one is unknown.
+std::optional<LocalPlane> LocalPlanes::finest(int column, int row) const {
+    const int height_px = static_cast<int>(places_.size()) / width_px_;
+    std::optional<LocalPlane> found;
+    for (int y = row - 1; y <= row + 1; ++y) {
+        for (int x = column - 1; x <= column + 1; ++x) {
+            if (x < 1 || y < 1 || x > width_px_ - 2 || y > height_px - 2) continue;
+            Moments sums;
+            for (int k = 0; k < 9; ++k) {
+                const InversePlace& one =
+                    places_[static_cast<std::size_t>((y - 1 + k / 3) * width_px_ + x - 1 + k % 3)];
+                sums.add(one.place.x(), one.place.y(), one.inverse_per_m);
+            }
+            const LocalPlane plane = plane_through(sums);
+            if (std::isfinite(plane.abc.sum()) && (!found || plane.rms_per_m < found->rms_per_m))
+                found = plane;
+        }
+    }
+    return found;
+}
+
 std::optional<LocalPlane> LocalPlanes::best(int column, int row) const {
+    if (block_px_ == kLeastBlock_px) {
+        if (const auto found = finest(column, row)) return found;
+    }
     constexpr int kReach = 2;
     const int i = column / block_px_;
     const int j = row / block_px_;
@@ -154,7 +182,7 @@ std::optional<LocalPlane> LocalPlanes::best(int column, int row) const {
             if (near == nullptr) continue;
             const double off =
                 is_known ? near->plane.inverse_at(here.place) - here.inverse_per_m : 0.0;
-            const double score = std::hypot(near->plane.rms_per_m, off);
+            const double score = std::max(near->plane.rms_per_m, std::abs(off) / kConsistent);
             if (score >= best_score) continue;
             best_score = score;
             found = near;

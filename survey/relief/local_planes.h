@@ -5,9 +5,11 @@
 //   1/Z = a + b x + c y,    (x, y) = (X, Y)/Z,    n = (b, c, a) / |(b, c, a)|
 //
 // linear in the place of the image, so a least-squares fit over a window is exact for any slope.
-// Windows are three blocks of block_px pixels each way. A pixel takes the window about its own
-// block unless another near it, up to two blocks off, fits much better, as beside a step: then the
-// plane of the best one goes on to the pixel.
+// Windows are three blocks of block_px pixels each way. A pixel takes the planes of the four
+// windows about it, linearly by its place between their middles, unless one of these fits worse
+// than another beside it by more than chance, as on a step: then the plane of the best one up to
+// two blocks off goes on to it, or, of the least blocks, that of the best 3 x 3 pixels which have
+// it.
 //
 // Independent noise of sigma in Z tilts the plane of a window of m pixels a side by
 //
@@ -62,12 +64,14 @@ class LocalPlanes {
     struct Window {
         LocalPlane plane;
         double mean_per_m = 0.0;
+        double count = 0.0;
         bool is_known = false;
         bool is_good = false;  // beside its neighbours
     };
     [[nodiscard]] const Window* window(int across, int down) const;
     void judge(int across, int down);
     [[nodiscard]] std::optional<LocalPlane> between(int column, int row) const;
+    [[nodiscard]] std::optional<LocalPlane> finest(int column, int row) const;
     [[nodiscard]] std::optional<LocalPlane> best(int column, int row) const;
 
     const std::vector<InversePlace>& places_;

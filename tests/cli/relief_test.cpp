@@ -107,6 +107,14 @@ TEST_F(CommandRelief, AStepIsEvenByItsDepthMapAlone) {
     EXPECT_LT(unevenness("--depth-map mm --depth-unit mm"), kEven);
 }
 
+// At 2 m, which is the left half's depth.
+TEST_F(CommandRelief, IsLeftOutOfObservedMaps) {
+    done(Arguments("observe step.exr --nav nav.csv --altitude 2 --depth-map axis -o map.exr"));
+    const std::vector<float> counts = read_exr(path("map.exr"), {"count.G"});
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        EXPECT_EQ(counts[i], i % kWidth_px < kWidth_px / 2 ? 1.0F : 0.0F) << i;
+}
+
 TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
     write_depths("mm", [](int column, int /*row*/) { return 1000.0 * step_m(column); });
     write_depths("holes", [](int /*column*/, int /*row*/) { return 0.0; });
