@@ -19,8 +19,11 @@ constexpr double kCoarseVeil = 1e-2;
 // What makes maps of some strobes alone, made when the first image asks for it.
 template <typename Maker>
 struct MakersOfLit {
+    using Make = std::function<std::shared_ptr<const Maker>(const Rig& lit)>;
+    MakersOfLit(const Rig& whole, Make how) : rig(whole), make(std::move(how)) {}
+
     Rig rig;
-    std::function<std::shared_ptr<const Maker>(const Rig& lit)> make;
+    Make make;
     std::mutex mutex{};
     std::map<std::uint64_t, std::shared_ptr<const Maker>> makers{};
 

@@ -36,11 +36,11 @@ ArrayXd chebyshev(double least, double most, int count) {
 }
 
 // Light of the points at each loss, by scatterer; paths are counted from from_m.
-struct Sums {
+struct VeilSums {
     ArrayXd loss_per_m;
     std::vector<ArrayXd> of;  // by scatterer
 
-    Sums(const ArrayXd& losses, std::size_t scatterers)
+    VeilSums(const ArrayXd& losses, std::size_t scatterers)
         : loss_per_m(losses), of(scatterers, ArrayXd::Zero(losses.size())) {}
 
     void add(const VeilPoints& points, std::size_t n, double from_m) {
@@ -113,8 +113,8 @@ ArrayXd VeilSpectrum::along(const VeilRay& ray) const {
         veil_.trace(s, ray, losses, points);
         if (points.path_m.empty()) continue;
         const double nearest_m = std::ranges::min(points.path_m);
-        Sums at_nodes(nodes_per_m_, light_[s].size());
-        Sums direct(loss_per_m_, light_[s].size());
+        VeilSums at_nodes(nodes_per_m_, light_[s].size());
+        VeilSums direct(loss_per_m_, light_[s].size());
         for (std::size_t n = 0; n < points.path_m.size(); ++n) {
             const bool is_smooth = nodes_per_m_.size() > 0 &&
                                    span_per_m * (points.path_m[n] - nearest_m) < kSmoothDepth;

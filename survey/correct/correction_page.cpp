@@ -194,7 +194,7 @@ std::string why_of(const MarkedImage& one) {
 }
 
 template <typename Image>
-std::vector<PagePart> named(const std::vector<Image>& images) {
+std::vector<PagePart> parts_of_images(const std::vector<Image>& images) {
     constexpr std::size_t kMostRows = 200;
     if (images.empty()) return {};
     PageList items;
@@ -244,8 +244,10 @@ std::string correction_html(const Survey& survey,
               .parts = light_over_altitude(report.looks)},
              {.id = "gain", .heading = "Gain", .parts = {gains(report)}},
              {.id = "doubts", .heading = "Doubtful pixels", .parts = {doubts(run)}},
-             {.id = "skipped", .heading = "Skipped images", .parts = named(run.skipped)},
-             {.id = "dropouts", .heading = "Not lit by all strobes", .parts = named(run.marked)},
+             {.id = "skipped", .heading = "Skipped images", .parts = parts_of_images(run.skipped)},
+             {.id = "dropouts",
+              .heading = "Not lit by all strobes",
+              .parts = parts_of_images(run.marked)},
              {.id = "rig", .heading = "Rig", .parts = rig(survey.light)}}});
 }
 

@@ -91,8 +91,8 @@ struct ReliefWriter {
         const InversePlace& here = places[pixel];
         double inverse_per_m = plane.inverse_at(here.place);
         const double off_per_m = std::abs(inverse_per_m - here.inverse_per_m);
-        constexpr double kRounding = 1e-6;
-        if (off_per_m > std::max(kOffPlane * plane.rms_per_m, kRounding * inverse_per_m))
+        constexpr double kRoundingOfFloats = 1e-6;
+        if (off_per_m > std::max(kOffPlane * plane.rms_per_m, kRoundingOfFloats * inverse_per_m))
             inverse_per_m = here.inverse_per_m;
         if (!(inverse_per_m > 0.0)) return;
         relief.point_m[pixel] = point_at(column, row, pixel, 1.0 / inverse_per_m).cast<float>();

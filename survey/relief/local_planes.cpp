@@ -107,7 +107,7 @@ const LocalPlanes::Window* LocalPlanes::window(int across, int down) const {
 
 // Rounding of single precision is no roughness.
 void LocalPlanes::judge(int across, int down) {
-    constexpr double kRounding = 1e-6;
+    constexpr double kRoundingOfFloats = 1e-6;
     Window& own = windows_[static_cast<std::size_t>(down * across_ + across)];
     double least = own.plane.rms_per_m;
     for (int y = down - 1; y <= down + 1; ++y) {
@@ -116,8 +116,8 @@ void LocalPlanes::judge(int across, int down) {
                 least = std::min(least, near->plane.rms_per_m);
     }
     const double worse = 1.0 + kWorse / std::sqrt(2.0 * own.count);
-    own.is_good =
-        own.is_known && own.plane.rms_per_m <= std::max(worse * least, kRounding * own.mean_per_m);
+    own.is_good = own.is_known && own.plane.rms_per_m <=
+                                      std::max(worse * least, kRoundingOfFloats * own.mean_per_m);
 }
 
 std::optional<LocalPlane> LocalPlanes::at(int column, int row) const {

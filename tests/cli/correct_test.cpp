@@ -763,7 +763,7 @@ TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
 TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     take("a.tif", {2.0, 0.0, 0.0});
     refused("correct raw -o out", "--rig with --nav, or --map");
-    refused("correct raw -o out --rig rig.toml", "--rig and --nav go together");
+    refused("correct raw -o out --rig rig.toml", "--rig needs --nav");
     refused("correct raw -o out --map none.exr", "none.exr");
     for (const char* folder : {"mine", "dark", "empty"}) fs::create_directories(path(folder));
     for (const char* name : {"mine/a.tif", "mine/a.mask.png"})

@@ -280,6 +280,40 @@ TEST(SurveyCheck, TiltsThatAreRadiansAreTold) {
     EXPECT_EQ(told_of(looks(false)), kNothing) << "a sled as steady as that";
 }
 
+// Of floors with patches, the light by the depth maps' other convention, or on the plane where maps
+// are other images'; and depths that go with the altitudes, or are those of the next image.
+TEST(SurveyCheck, DepthMapsOfAnotherConventionOrOfOtherImagesAreTold) {
+    constexpr double kPatches = 0.05;
+    enum class Maps { Right, OtherConvention, OtherImages };
+    const auto looks = [&](Maps maps) {
+        std::mt19937 random(3);
+        std::normal_distribution<double> normal(0.0, kPatches);
+        std::vector<ImageLook> all(16);
+        const auto like = [&](double slope) {
+            constexpr double kSpread = 0.1;  // between the two lights, of each of 192 blocks
+            constexpr std::size_t kBlocks = 192;
+            const double xx = kBlocks * kSpread * kSpread;
+            return Likeness{
+                .xx = xx, .xy = slope * xx + std::sqrt(xx) * normal(random), .blocks = kBlocks};
+        };
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            all[i].as_other_convention = like(maps == Maps::OtherConvention ? 1.0 : 0.0);
+            all[i].as_plane = like(0.0);
+            all[i].altitude_m = 2.0 + 0.5 * std::sin(static_cast<double>(i));
+            const std::size_t of = maps == Maps::OtherImages ? (i + 2) % all.size() : i;
+            all[i].depth_m = 2.0 + 0.5 * std::sin(static_cast<double>(of)) + 0.1 * normal(random);
+        }
+        return all;
+    };
+    EXPECT_EQ(told_of(looks(Maps::Right)), kNothing);
+    EXPECT_EQ(told_of(looks(Maps::OtherConvention)), std::vector<std::string>{"depth"});
+    EXPECT_EQ(told_of(looks(Maps::OtherImages)), std::vector<std::string>{"depth"});
+    std::vector<ImageLook> planes = looks(Maps::Right);
+    for (ImageLook& look : planes) look.as_plane = look.as_other_convention = {};
+    for (ImageLook& look : planes) look.as_plane = {.xx = 1.0, .xy = 0.95, .blocks = 192};
+    EXPECT_EQ(told_of(planes), std::vector<std::string>{"depth"});
+}
+
 // --- Images of whole frames ----------------------------------------------------------------------
 
 constexpr int kWidth_px = 64;
