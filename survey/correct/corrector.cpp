@@ -255,7 +255,7 @@ class ModelCorrector : public Corrector {
     // Their text, changed, does every image of every folder anew.
     [[nodiscard]] Json settings() const override {
         const LightAt& light = survey_.light;
-        Json json{{light.toml.empty() ? "map_sha256" : "rig_sha256", light.digest},
+        Json json{{survey_.navigation || survey_.depth ? "rig_sha256" : "map_sha256", light.digest},
                   {"camera_sha256", light.camera_digest},
                   {"keep_mosaic", options_.keep_mosaic},
                   {"gain", nullptr},

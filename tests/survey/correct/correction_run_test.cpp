@@ -85,7 +85,7 @@ TEST_F(CorrectionRun, ItsReportIsWhatItLeaves) {
               report);
     EXPECT_EQ(report["corrected"], 4);
     EXPECT_EQ(report["settings"]["rig_sha256"], "by hand");
-    EXPECT_EQ(report["doubtful"].size(), 5U);
+    EXPECT_EQ(report["doubtful"].size(), 6U);
     EXPECT_EQ(report["not_checked"],
               "altitudes, red for blue, radians: 4 images with light; needed: 12");
 }
