@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/relief_veil.h"
 
+#include "image/image_size.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -86,8 +88,8 @@ std::vector<float> ReliefVeil::before(const Relief& relief) const {
                                                 (x - i) * (1.0 - y + j),
                                                 (1.0 - x + i) * (y - j),
                                                 (x - i) * (y - j)};
-            const auto place = static_cast<std::size_t>(j * across_ + i);
-            const auto next_row = static_cast<std::size_t>(across_);
+            const std::size_t place = size_of(j) * size_of(across_) + size_of(i);
+            const std::size_t next_row = size_of(across_);
             const std::array<std::size_t, 4> places{
                 place, place + 1, place + next_row, place + next_row + 1};
             for (std::size_t c = 0; c < kChannels; ++c) {

@@ -330,7 +330,7 @@ DropoutScales learned(std::span<const LightCells> images, bool level_is_free) {
 }
 
 std::string words_of(const MarkedImage& marked) {
-    const std::string of_light = fmt::format("lit by {:.2g} of the survey's light", marked.share);
+    std::string of_light = fmt::format("lit by {:.2g} of the survey's light", marked.share);
     if (marked.strobes.empty()) return of_light;
     return fmt::format("strobe{} {} did not fire: {}",
                        marked.strobes.size() > 1 ? "s" : "",

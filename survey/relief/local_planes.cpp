@@ -2,6 +2,7 @@
 #include "survey/relief/local_planes.h"
 
 #include "base/upper_median.h"
+#include "image/image_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,13 +69,11 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
       down_(0) {
     const auto height_px = static_cast<int>(places.size()) / width_px;
     down_ = (height_px + block_px - 1) / block_px;
-    std::vector<Moments> blocks(static_cast<std::size_t>(across_) *
-                                static_cast<std::size_t>(down_));
+    std::vector<Moments> blocks(size_of(across_) * size_of(down_));
     for (int row = 0; row < height_px; ++row) {
-        Moments* const blocks_of_row =
-            &blocks[static_cast<std::size_t>(row / block_px) * static_cast<std::size_t>(across_)];
+        Moments* const blocks_of_row = &blocks[size_of(row / block_px) * size_of(across_)];
         for (int column = 0; column < width_px; ++column) {
-            const InversePlace& one = places[static_cast<std::size_t>(row * width_px + column)];
+            const InversePlace& one = places[size_of(row) * size_of(width_px) + size_of(column)];
             if (std::isfinite(one.inverse_per_m))
                 blocks_of_row[column / block_px].add(
                     one.place.x(), one.place.y(), one.inverse_per_m);
@@ -86,7 +85,7 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
             Moments sums;
             for (int y = std::max(0, j - 1); y <= std::min(down_ - 1, j + 1); ++y)
                 for (int x = std::max(0, i - 1); x <= std::min(across_ - 1, i + 1); ++x)
-                    sums += blocks[static_cast<std::size_t>(y * across_ + x)];
+                    sums += blocks[size_of(y) * size_of(across_) + size_of(x)];
             Window& window = windows_.emplace_back();
             window.is_known = sums.count >= std::max(4.0, kKnownShare * whole);
             if (!window.is_known) continue;
@@ -101,14 +100,14 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
 
 const LocalPlanes::Window* LocalPlanes::window(int across, int down) const {
     if (across < 0 || down < 0 || across >= across_ || down >= down_) return nullptr;
-    const Window& found = windows_[static_cast<std::size_t>(down * across_ + across)];
+    const Window& found = windows_[size_of(down) * size_of(across_) + size_of(across)];
     return found.is_known ? &found : nullptr;
 }
 
 // Rounding of single precision is no roughness.
 void LocalPlanes::judge(int across, int down) {
     constexpr double kRoundingOfFloats = 1e-6;
-    Window& own = windows_[static_cast<std::size_t>(down * across_ + across)];
+    Window& own = windows_[size_of(down) * size_of(across_) + size_of(across)];
     double least = own.plane.rms_per_m;
     for (int y = down - 1; y <= down + 1; ++y) {
         for (int x = across - 1; x <= across + 1; ++x)
@@ -134,7 +133,7 @@ std::optional<LocalPlane> LocalPlanes::between(int column, int row) const {
     for (int k = 0; k < 4; ++k) {
         const int across = std::min(i + k % 2, across_ - 1);
         const int down = std::min(j + k / 2, down_ - 1);
-        const Window& one = windows_[static_cast<std::size_t>(down * across_ + across)];
+        const Window& one = windows_[size_of(down) * size_of(across_) + size_of(across)];
         if (!one.is_good) return std::nullopt;
         const double share =
             (k % 2 == 0 ? 1.0 - x + i : x - i) * (k / 2 == 0 ? 1.0 - y + j : y - j);
@@ -154,7 +153,7 @@ std::optional<LocalPlane> LocalPlanes::finest(int column, int row) const {
             Moments sums;
             for (int k = 0; k < 9; ++k) {
                 const InversePlace& one =
-                    places_[static_cast<std::size_t>((y - 1 + k / 3) * width_px_ + x - 1 + k % 3)];
+                    places_[size_of(y - 1 + k / 3) * size_of(width_px_) + size_of(x - 1 + k % 3)];
                 sums.add(one.place.x(), one.place.y(), one.inverse_per_m);
             }
             const LocalPlane plane = plane_through(sums);
@@ -167,12 +166,12 @@ std::optional<LocalPlane> LocalPlanes::finest(int column, int row) const {
 
 std::optional<LocalPlane> LocalPlanes::best(int column, int row) const {
     if (block_px_ == kLeastBlock_px) {
-        if (const auto found = finest(column, row)) return found;
+        if (auto near = finest(column, row)) return near;
     }
     constexpr int kReach = 2;
     const int i = column / block_px_;
     const int j = row / block_px_;
-    const InversePlace& here = places_[static_cast<std::size_t>(row * width_px_ + column)];
+    const InversePlace& here = places_[size_of(row) * size_of(width_px_) + size_of(column)];
     const bool is_known = std::isfinite(here.inverse_per_m);
     const Window* found = nullptr;
     double best_score = std::numeric_limits<double>::infinity();

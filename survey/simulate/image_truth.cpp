@@ -100,8 +100,9 @@ void write_seen_of(const SimulatedSurvey& survey,
         std::vector<float> textures(plane, 1.0F);
         if (texture) texture->read_rows(first, rows, std::vector<std::string>{"Y"}, textures);
         for (std::size_t i = 0; i < plane; ++i) {
-            const auto seen = sight(static_cast<double>(i % width) + 0.5,
-                                    first + static_cast<double>(i / width) + 0.5);
+            const std::size_t row = i / width;
+            const auto seen =
+                sight(static_cast<double>(i % width) + 0.5, first + static_cast<double>(row) + 0.5);
             const SeenPixel pixel = pixel_of(seen, colours, textures[i]);
             for (std::size_t p = 0; p < kSeenPlanes; ++p) samples[p * plane + i] = pixel[p];
         }
