@@ -31,10 +31,10 @@ struct Relief {
     }
 };
 
-// Every so many of `count` places from the first on, and the last.
+// Every so many of `count` places from the first on, and the last: two at least.
 [[nodiscard]] inline std::vector<int> every(int step, int count) {
-    std::vector<int> places;
-    for (int place = 0; place < count - 1; place += step) places.push_back(place);
+    std::vector<int> places{0};
+    for (int place = step; place < count - 1; place += step) places.push_back(place);
     places.push_back(count - 1);
     return places;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/relief_image.h"
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "light/relief_shadow.h"
 
@@ -14,50 +13,73 @@
 namespace aphotic {
 namespace {
 
-// Of one lamp, by pixel: 0 where it is not hidden. Between the mesh's vertices it is the same where
-// all four next to a cell agree.
+// Pixels from the first up to the next vertices.
+struct Cell {
+    int column;
+    int row;
+    int right;
+    int below;
+};
+
+std::array<std::size_t, 4> corners_of(const Cell& cell, const Relief& relief) {
+    return {relief.at(cell.column, cell.row),
+            relief.at(cell.right, cell.row),
+            relief.at(cell.column, cell.below),
+            relief.at(cell.right, cell.below)};
+}
+
+template <typename Work>
+void for_each_pixel(const Cell& cell, const Relief& relief, const Work& work) {
+    const int last_row = cell.below == relief.height_px - 1 ? cell.below : cell.below - 1;
+    const int last_column = cell.right == relief.width_px - 1 ? cell.right : cell.right - 1;
+    for (int row = cell.row; row <= last_row; ++row)
+        for (int column = cell.column; column <= last_column; ++column) work(column, row);
+}
+
+// look(column, row) at every vertex, then fill(cell), which leaves these as they are.
+template <typename Look, typename Fill>
+void by_cells(const Relief& relief, int step_px, int threads, const Look& look, const Fill& fill) {
+    const std::vector<int> columns = every(step_px, relief.width_px);
+    const std::vector<int> rows = every(step_px, relief.height_px);
+    const auto each = [&](std::size_t count, const auto& work) {
+        parallel_for(
+            count, static_cast<std::size_t>(threads), [&](std::size_t j, std::size_t) { work(j); });
+    };
+    each(rows.size(), [&](std::size_t j) {
+        for (const int column : columns) look(column, rows[j]);
+    });
+    each(rows.size() - 1, [&](std::size_t j) {
+        for (std::size_t i = 0; i + 1 < columns.size(); ++i)
+            fill(Cell{.column = columns[i],
+                      .row = rows[j],
+                      .right = columns[i + 1],
+                      .below = rows[j + 1]});
+    });
+}
+
+// Of one lamp, by pixel: 0 where it is not hidden. Between vertices of the mesh it is the same
+// where all four about a cell agree.
 std::vector<std::uint8_t> shadow_of(const ReliefShadow& shadow,
                                     const Relief& relief,
                                     const Eigen::Vector3d& lamp_m,
                                     int threads) {
-    const int step = shadow.step_px();
     std::vector<std::uint8_t> hidden(relief.point_m.size());
     const auto look = [&](int column, int row) {
         const std::size_t pixel = relief.at(column, row);
         hidden[pixel] = relief.knows(pixel) && shadow.hides(pixel, lamp_m) ? 1 : 0;
     };
-    const auto next = [step](int place, int count) { return std::min(place + step, count - 1); };
-    const auto cells = static_cast<std::size_t>((relief.height_px + step - 1) / step);
-    const auto for_rows = [&](const auto& work) {
-        parallel_for(cells, static_cast<std::size_t>(threads), [&](std::size_t j, std::size_t) {
-            work(static_cast<int>(j) * step);
+    by_cells(relief, shadow.step_px(), threads, look, [&](const Cell& cell) {
+        const std::array<std::size_t, 4> at = corners_of(cell, relief);
+        const bool is_even =
+            std::ranges::all_of(at, [&](std::size_t k) { return hidden[k] == hidden[at[0]]; });
+        for_each_pixel(cell, relief, [&](int column, int row) {
+            const std::size_t pixel = relief.at(column, row);
+            if (std::ranges::find(at, pixel) != at.end()) return;
+            if (is_even)
+                hidden[pixel] = hidden[at[0]];
+            else
+                look(column, row);
         });
-    };
-    // The vertices of each row of cells, then what lies between.
-    for_rows([&](int row) {
-        for (int column = 0; column < relief.width_px; column += step) look(column, row);
-        look(relief.width_px - 1, row);
-    });
-    for (int column = 0; column < relief.width_px; column += step)
-        look(column, relief.height_px - 1);
-    look(relief.width_px - 1, relief.height_px - 1);
-    const std::vector<std::uint8_t> vertices = hidden;
-    for_rows([&](int row) {
-        const int below = next(row, relief.height_px);
-        for (int column = 0; column < relief.width_px; column += step) {
-            const int right = next(column, relief.width_px);
-            const int sum = vertices[relief.at(column, row)] + vertices[relief.at(right, row)] +
-                            vertices[relief.at(column, below)] + vertices[relief.at(right, below)];
-            const bool is_even = sum == 0 || sum == 4;
-            for (int y = row; y < std::min(row + step, relief.height_px); ++y) {
-                for (int x = column; x < std::min(column + step, relief.width_px); ++x) {
-                    if (is_even)
-                        hidden[relief.at(x, y)] = sum == 4 ? 1 : 0;
-                    else
-                        look(x, y);
-                }
-            }
-        }
     });
     return hidden;
 }
@@ -68,14 +90,6 @@ struct LampOnRelief {
     const BeamEdges* edges;
     std::uint32_t of_shadow;
     std::vector<std::uint32_t> of_edges;
-};
-
-// Pixels from the first up to the next, whose light the corners tell where the relief is smooth.
-struct Cell {
-    int column;
-    int row;
-    int right;
-    int below;
 };
 
 class ReliefPainter {
@@ -95,13 +109,6 @@ class ReliefPainter {
         return found_.samples[channel * relief_.point_m.size() + pixel];
     }
     [[nodiscard]] bool is_smooth(const Cell& cell) const;
-    [[nodiscard]] std::array<std::size_t, 4> corners(const Cell& cell) const {
-        return {relief_.at(cell.column, cell.row),
-                relief_.at(cell.right, cell.row),
-                relief_.at(cell.column, cell.below),
-                relief_.at(cell.right, cell.below)};
-    }
-
     const FloorLight& light_;
     const Relief& relief_;
     std::vector<LampOnRelief> lamps_;
@@ -115,14 +122,6 @@ std::array<float, 4> shares_at(const Cell& cell, int column, int row) {
     const float y =
         static_cast<float>(row - cell.row) / static_cast<float>(std::max(1, cell.below - cell.row));
     return {(1.0F - x) * (1.0F - y), x * (1.0F - y), (1.0F - x) * y, x * y};
-}
-
-template <typename Work>
-void for_each_pixel(const Cell& cell, const Relief& relief, const Work& work) {
-    const int last_row = cell.below == relief.height_px - 1 ? cell.below : cell.below - 1;
-    const int last_column = cell.right == relief.width_px - 1 ? cell.right : cell.right - 1;
-    for (int row = cell.row; row <= last_row; ++row)
-        for (int column = cell.column; column <= last_column; ++column) work(column, row);
 }
 
 void ReliefPainter::look(int column, int row) {
@@ -150,14 +149,6 @@ void ReliefPainter::look(int column, int row) {
         }
         light_.add(lamp, rays, false, place);
     }
-    if (place.is_before || place.is_beyond)
-        throw InputError(
-            "pixel {}, {}: found a path of light that is {}; allowed: from {:g} to {:g} m",
-            column,
-            row,
-            place.is_before ? "shorter" : "longer",
-            kReliefPaths.shortest_m,
-            kReliefPaths.longest_m);
     found_.seen[pixel] = seen;
     for (std::size_t c = 0; c < kChannels; ++c)
         sample(c, pixel) = static_cast<float>(place.signals[c]);
@@ -165,7 +156,7 @@ void ReliefPainter::look(int column, int row) {
 
 // Points and normals are those of the corners, interpolated, and the same lamps light these.
 bool ReliefPainter::is_smooth(const Cell& cell) const {
-    const std::array<std::size_t, 4> at = corners(cell);
+    const std::array<std::size_t, 4> at = corners_of(cell, relief_);
     for (const std::size_t corner : at)
         if (!relief_.knows(corner) || found_.seen[corner] != found_.seen[at[0]]) return false;
     const float most_m = kReliefOff * relief_.point_m[at[0]].norm();
@@ -186,7 +177,7 @@ bool ReliefPainter::is_smooth(const Cell& cell) const {
 }
 
 void ReliefPainter::fill(const Cell& cell) {
-    const std::array<std::size_t, 4> at = corners(cell);
+    const std::array<std::size_t, 4> at = corners_of(cell, relief_);
     const int column = (cell.column + cell.right) / 2;
     const int row = (cell.row + cell.below) / 2;
     bool is_right = is_smooth(cell);
@@ -238,22 +229,12 @@ ReliefLight relief_light(const Rig& rig,
             lamps.back().of_edges.push_back(static_cast<std::uint32_t>(engine()));
     }
     ReliefPainter painter(light, relief, std::move(lamps));
-    const std::vector<int> columns = every(kReliefCell_px, relief.width_px);
-    const std::vector<int> rows = every(kReliefCell_px, relief.height_px);
-    const auto for_rows = [&](std::size_t count, const auto& work) {
-        parallel_for(
-            count, static_cast<std::size_t>(threads), [&](std::size_t j, std::size_t) { work(j); });
-    };
-    for_rows(rows.size(), [&](std::size_t j) {
-        for (const int column : columns) painter.look(column, rows[j]);
-    });
-    for_rows(rows.size() - 1, [&](std::size_t j) {
-        for (std::size_t i = 0; i + 1 < columns.size(); ++i)
-            painter.fill({.column = columns[i],
-                          .row = rows[j],
-                          .right = columns[i + 1],
-                          .below = rows[j + 1]});
-    });
+    by_cells(
+        relief,
+        kReliefCell_px,
+        threads,
+        [&](int column, int row) { painter.look(column, row); },
+        [&](const Cell& one) { painter.fill(one); });
     return painter.take();
 }
 

@@ -19,7 +19,7 @@
 
 namespace aphotic {
 
-// That a table of the signal has for a relief of any shape.
+// That a table of the signal has for a relief of any shape. Light on other ways is left out.
 inline constexpr PathRange kReliefPaths{.shortest_m = 0.02, .longest_m = 100.0};
 
 inline constexpr int kReliefCell_px = 4;

@@ -2,6 +2,7 @@
 #include "light/relief_veil.h"
 
 #include "image/image_size.h"
+#include "light/relief_image.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +14,10 @@ namespace {
 
 constexpr std::size_t kDepths = 4;  // of a cubic
 
-// ln Z in steps.
+// ln Z in steps, of depths that light comes back from.
 double steps_to(double depth_m) {
-    return std::log(depth_m) / std::log1p(kVeilDepthStep);
+    const double lit_m = std::clamp(depth_m, kReliefPaths.shortest_m, kReliefPaths.longest_m);
+    return std::log(lit_m) / std::log1p(kVeilDepthStep);
 }
 
 // Of the cubic through -1, 0, 1 and 2.

@@ -3,15 +3,18 @@
 // Images of a step of 0.3 m, corrected by depth maps of each kind: one cosine lamp 0.3 m ahead of
 // the camera, in water that absorbs nothing, so that the signal is z^2/d^4 in closed form.
 #include "base/npy_file.h"
-#include "image/exr.h"
+#include "rig/rig.h"
 #include "support/command_test.h"
 #include "support/exr_file.h"
+#include "support/png.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+#include <numbers>
+#include <sstream>
 
 namespace aphotic::relief_test {
 namespace {
@@ -77,6 +80,22 @@ class CommandRelief : public CommandTest {
                 depths.push_back(static_cast<float>(depth_m(column, row)));
         write_npy(path(folder) / "step.npy", {kHeight_px, kWidth_px}, depths);
     }
+    // Of a table of image, altitude_m, pitch_deg, roll_deg.
+    [[nodiscard]] std::vector<Sled> poses_in(const std::string& file) const {
+        constexpr double kDegree_rad = std::numbers::pi / 180.0;
+        std::vector<Sled> sleds;
+        std::istringstream lines(text_of(file));
+        std::string line;
+        std::getline(lines, line);
+        for (Sled sled; std::getline(lines, line); sleds.push_back(sled)) {
+            std::istringstream fields(line.substr(line.find(',') + 1));
+            char comma = ' ';
+            fields >> sled.altitude_m >> comma >> sled.pitch_rad >> comma >> sled.roll_rad;
+            sled.pitch_rad *= kDegree_rad;
+            sled.roll_rad *= kDegree_rad;
+        }
+        return sleds;
+    }
     // The largest departure from the image's middle.
     [[nodiscard]] double unevenness(const std::string& options) const {
         std::filesystem::remove_all(path("out"));
@@ -113,6 +132,79 @@ TEST_F(CommandRelief, IsLeftOutOfObservedMaps) {
     const std::vector<float> counts = read_exr(path("map.exr"), {"count.G"});
     for (std::size_t i = 0; i < counts.size(); ++i)
         EXPECT_EQ(counts[i], i % kWidth_px < kWidth_px / 2 ? 1.0F : 0.0F) << i;
+}
+
+// A hole of three pixels takes the plane around it, is as even as the rest, and is marked by 32;
+// both sides of the step are edges, 8; and nothing else is marked.
+TEST_F(CommandRelief, HolesAndJumpsAreMarked) {
+    constexpr std::uint32_t kRange = 32;
+    constexpr std::uint32_t kEdge = 8;
+    write_depths("holes", [](int column, int row) {
+        return column == 10 && row >= 20 && row < 23 ? 0.0 : step_m(column);
+    });
+    EXPECT_LT(unevenness("--depth-map holes --edge-px 1"), kEven);
+    const DecodedPng mask = decode_png(text_of("out/step.mask.png"));
+    for (int row = 0; row < kHeight_px; ++row) {
+        for (int column = 0; column < kWidth_px; ++column) {
+            const bool is_hole = column == 10 && row >= 20 && row < 23;
+            const bool is_edge = column == kWidth_px / 2 - 1 || column == kWidth_px / 2;
+            const auto i = static_cast<std::size_t>(row * kWidth_px + column);
+            EXPECT_EQ(mask.pixels[i] & 0xFFU,
+                      is_hole   ? kRange
+                      : is_edge ? kEdge
+                                : 0U)
+                << column << ", " << row;
+        }
+    }
+}
+
+// A survey over a plane, whose depth maps are those of its true poses, in closed form: along rays
+// but taken along the axis; or those of other images.
+TEST_F(CommandRelief, MapsOfAnotherConventionOrOfOtherImagesAreWarnedOf) {
+    constexpr int kImages = 14;
+    std::string wide = kRig;
+    wide.replace(wide.find("multiple = 0"), 12, "absorption = \"pope-fry-1997\"");
+    write_file(path("rig.toml"), wide);
+    done(
+        Arguments(fmt::format("survey rig.toml --images {} --texture 0.05 --no-noise -o s "
+                              "--altitude 1.5,2.5 --black-level 0 --white-level 65535",
+                              kImages)));
+    const std::vector<Sled> sleds = poses_in("s/navigation.txt");
+    ASSERT_EQ(sleds.size(), std::size_t{kImages});
+    const auto write_maps = [&](const std::string& folder, bool is_along_ray, std::size_t shift) {
+        std::filesystem::create_directories(path(folder));
+        for (std::size_t i = 0; i < sleds.size(); ++i) {
+            const Sled& sled = sleds[(i + shift) % sleds.size()];
+            std::vector<float> depths;
+            for (int row = 0; row < kHeight_px; ++row) {
+                for (int column = 0; column < kWidth_px; ++column) {
+                    const double forward = (0.5 * kHeight_px - row - 0.5) / kFocal_px;
+                    const double right = (column + 0.5 - 0.5 * kWidth_px) / kFocal_px;
+                    const Eigen::Vector3d sight(forward, right, 1.0);
+                    const Eigen::Vector3d down(-std::sin(sled.pitch_rad),
+                                               std::cos(sled.pitch_rad) * std::sin(sled.roll_rad),
+                                               std::cos(sled.pitch_rad) * std::cos(sled.roll_rad));
+                    const double depth_m = sled.altitude_m * down.z() / down.dot(sight);
+                    depths.push_back(
+                        static_cast<float>(is_along_ray ? depth_m * sight.norm() : depth_m));
+                }
+            }
+            write_npy(
+                path(folder) / fmt::format("{:06}.npy", i + 1), {kHeight_px, kWidth_px}, depths);
+        }
+    };
+    write_maps("right", false, 0);
+    write_maps("rays", true, 0);
+    write_maps("others", false, 3);
+    const auto said = [&](const std::string& maps) {
+        return done(Arguments("correct s/raw --bayer RGGB --rig rig.toml --black-level 0 "
+                              "--white-level 65535 --nav s/navigation.txt -o o-" +
+                              maps + " --depth-map " + maps))
+            .err;
+    };
+    EXPECT_FALSE(has(said("right"), "depth"));
+    EXPECT_TRUE(has(said("rays"), "depths of the other convention"));
+    EXPECT_TRUE(has(said("others"), "other images'"));
 }
 
 TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {

@@ -159,6 +159,45 @@ TEST(ReliefMap, OverABlockAndABallIsTheReferences) {
     EXPECT_LE(off, compared / 1000) << off << " of " << compared;
 }
 
+// Each row of an image is an image by itself, of which every pixel has its light.
+TEST(ReliefMap, OfOneRowIsThatRow) {
+    const Rig rig = habcam(64, 48);
+    Rig row_rig = rig;
+    row_rig.camera.height_px = 1;
+    const ReliefMapMaker maker(rig, {});
+    const Relief whole = plane_of(rig, maker);
+    constexpr int kRow = 20;
+    Relief one{.width_px = whole.width_px, .height_px = 1};
+    for (int column = 0; column < whole.width_px; ++column) {
+        one.point_m.push_back(whole.point_m[whole.at(column, kRow)]);
+        one.normal.push_back(whole.normal[whole.at(column, kRow)]);
+    }
+    const ReliefMap found = ReliefMapMaker(row_rig, {}).map(one, 0);
+    const ReliefMap expected = maker.map(whole, kEdge_px);
+    for (int column = 0; column < whole.width_px; ++column) {
+        const std::size_t there = whole.at(column, kRow);
+        if (expected.edges[there] != 0) continue;
+        EXPECT_NEAR(found.map.samples[static_cast<std::size_t>(column)],
+                    expected.map.samples[there],
+                    kOfLight * expected.map.samples[there])
+            << column;
+    }
+}
+
+// No light comes back from beyond kReliefPaths, and the veil ends there.
+TEST(ReliefMap, IsDarkFarAway) {
+    Rig rig = habcam(64, 48);
+    rig.water.absorption_per_m = flat(0.1);
+    rig.water.scatterers = {{flat(0.2), builtin_phase("petzold")}};
+    const ReliefMapMaker maker(rig, {});
+    Relief relief = plane_of(rig, maker);
+    relief.point_m[relief.at(20, 20)] *= 1e4F;
+    const ReliefMap found = maker.map(relief, 0);
+    EXPECT_EQ(found.map.samples[relief.at(20, 20)], 0.0F);
+    EXPECT_GT(found.map.veil[relief.at(20, 20)], found.map.veil[relief.at(20, 22)]);
+    EXPECT_LT(found.map.veil[relief.at(20, 20)], 2.0F * found.map.veil[relief.at(20, 22)]);
+}
+
 TEST(ReliefMap, IsDarkWhereNothingIsKnown) {
     const Rig rig = habcam(64, 48);
     const ReliefMapMaker maker(rig, {});
