@@ -72,13 +72,14 @@ class CommandRelief : public CommandTest {
         return z * z / std::pow(ahead * ahead + across * across + z * z, 2);
     }
     void write_depths(const std::string& folder,
-                      const std::function<double(int column, int row)>& depth_m) const {
+                      const std::function<double(int column, int row)>& depth_m,
+                      const std::string& name = "step") const {
         std::filesystem::create_directories(path(folder));
         std::vector<float> depths;
         for (int row = 0; row < kHeight_px; ++row)
             for (int column = 0; column < kWidth_px; ++column)
                 depths.push_back(static_cast<float>(depth_m(column, row)));
-        write_npy(path(folder) / "step.npy", {kHeight_px, kWidth_px}, depths);
+        write_npy(path(folder) / (name + ".npy"), {kHeight_px, kWidth_px}, depths);
     }
     // Of a table of image, altitude_m, pitch_deg, roll_deg.
     [[nodiscard]] std::vector<Sled> poses_in(const std::string& file) const {
@@ -95,6 +96,28 @@ class CommandRelief : public CommandTest {
             sled.roll_rad *= kDegree_rad;
         }
         return sleds;
+    }
+    // Of planes below these poses, each that of the image `shift` further on.
+    void write_maps(const std::vector<Sled>& sleds,
+                    const std::string& folder,
+                    bool is_along_ray,
+                    std::size_t shift) const {
+        for (std::size_t i = 0; i < sleds.size(); ++i) {
+            const Sled& sled = sleds[(i + shift) % sleds.size()];
+            const Eigen::Vector3d down(-std::sin(sled.pitch_rad),
+                                       std::cos(sled.pitch_rad) * std::sin(sled.roll_rad),
+                                       std::cos(sled.pitch_rad) * std::cos(sled.roll_rad));
+            write_depths(
+                folder,
+                [&](int column, int row) {
+                    const Eigen::Vector3d sight((0.5 * kHeight_px - row - 0.5) / kFocal_px,
+                                                (column + 0.5 - 0.5 * kWidth_px) / kFocal_px,
+                                                1.0);
+                    const double depth_m = sled.altitude_m * down.z() / down.dot(sight);
+                    return is_along_ray ? depth_m * sight.norm() : depth_m;
+                },
+                fmt::format("{:06}", i + 1));
+        }
     }
     // The largest departure from the image's middle.
     [[nodiscard]] double unevenness(const std::string& options) const {
@@ -171,31 +194,9 @@ TEST_F(CommandRelief, MapsOfAnotherConventionOrOfOtherImagesAreWarnedOf) {
                               kImages)));
     const std::vector<Sled> sleds = poses_in("s/navigation.txt");
     ASSERT_EQ(sleds.size(), std::size_t{kImages});
-    const auto write_maps = [&](const std::string& folder, bool is_along_ray, std::size_t shift) {
-        std::filesystem::create_directories(path(folder));
-        for (std::size_t i = 0; i < sleds.size(); ++i) {
-            const Sled& sled = sleds[(i + shift) % sleds.size()];
-            std::vector<float> depths;
-            for (int row = 0; row < kHeight_px; ++row) {
-                for (int column = 0; column < kWidth_px; ++column) {
-                    const double forward = (0.5 * kHeight_px - row - 0.5) / kFocal_px;
-                    const double right = (column + 0.5 - 0.5 * kWidth_px) / kFocal_px;
-                    const Eigen::Vector3d sight(forward, right, 1.0);
-                    const Eigen::Vector3d down(-std::sin(sled.pitch_rad),
-                                               std::cos(sled.pitch_rad) * std::sin(sled.roll_rad),
-                                               std::cos(sled.pitch_rad) * std::cos(sled.roll_rad));
-                    const double depth_m = sled.altitude_m * down.z() / down.dot(sight);
-                    depths.push_back(
-                        static_cast<float>(is_along_ray ? depth_m * sight.norm() : depth_m));
-                }
-            }
-            write_npy(
-                path(folder) / fmt::format("{:06}.npy", i + 1), {kHeight_px, kWidth_px}, depths);
-        }
-    };
-    write_maps("right", false, 0);
-    write_maps("rays", true, 0);
-    write_maps("others", false, 3);
+    write_maps(sleds, "right", false, 0);
+    write_maps(sleds, "rays", true, 0);
+    write_maps(sleds, "others", false, 3);
     const auto said = [&](const std::string& maps) {
         return done(Arguments("correct s/raw --bayer RGGB --rig rig.toml --black-level 0 "
                               "--white-level 65535 --nav s/navigation.txt -o o-" +
@@ -205,6 +206,43 @@ TEST_F(CommandRelief, MapsOfAnotherConventionOrOfOtherImagesAreWarnedOf) {
     EXPECT_FALSE(has(said("right"), "depth"));
     EXPECT_TRUE(has(said("rays"), "depths of the other convention"));
     EXPECT_TRUE(has(said("others"), "other images'"));
+}
+
+// What an image without one strobe becomes by the light that was on, on the depth map's floor, is
+// what it becomes with all of them by all of it.
+TEST_F(CommandRelief, AStrobeThatIsOutIsToldOnReliefToo) {
+    constexpr double kOfQuantities = 0.01;  // integers of a dark corner
+    std::string rig = kRig;
+    rig += rig.substr(rig.find("[[strobe]]"));
+    rig.replace(rig.rfind("\"lamp\""), 6, "\"aft\"");
+    rig.replace(rig.rfind("[0.3,"), 5, "[-0.8,");
+    rig.replace(rig.find("multiple = 0"), 12, "absorption = \"pope-fry-1997\"");
+    write_file(path("rig.toml"), rig);
+    const std::string survey =
+        "survey rig.toml --images 10 --texture 0.05 --no-noise --electrons-per-signal 20000 "
+        "--black-level 0 --white-level 65535 -o ";
+    done(Arguments(survey + "lit"));
+    done(Arguments(survey + "unlit --set strobe.aft.power=0"));
+    write_maps(poses_in("lit/navigation.txt"), "maps", false, 0);
+    const auto corrected = [&](const std::string& raw) {
+        const CommandResult run =
+            done(Arguments("correct " + raw +
+                           "/raw --rig rig.toml --depth-map maps --bayer RGGB "
+                           "--black-level 0 --white-level 65535 --gain 1 --format exr "
+                           "--dropouts correct -o o-" +
+                           raw));
+        const std::vector<float> green = read_exr(path("o-" + raw + "/000004.exr"), {"G"});
+        return std::pair(green, run.err);
+    };
+    const auto expected = corrected("lit").first;
+    std::filesystem::copy(path("unlit/raw/000004.tif"),
+                          path("lit/raw/000004.tif"),
+                          std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::remove_all(path("o-lit"));
+    const auto [found, said] = corrected("lit");
+    EXPECT_TRUE(has(said, "000004.tif: strobe aft did not fire")) << said;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], expected[i], kOfQuantities * expected[i]) << i;
 }
 
 TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {

@@ -84,6 +84,7 @@ TEST(ReliefMap, OnAPlaneIsTheLightmapBehindAnyLensAndPort) {
                     .roll_rad = dice.between(-0.2, 0.2)};
         if (k % 2 == 1) give_lens(kLensKinds.at(static_cast<std::size_t>(k / 2)), dice, rig.camera);
         if (k >= 3) give_port(kPortKinds.at(static_cast<std::size_t>(k - 3)), dice, rig.camera);
+        if (k % 3 == 2) give_vignetting(static_cast<std::size_t>(k), dice, rig.camera);
         const ReliefMapMaker maker(rig, {});
         const ReliefMap found = maker.map(plane_of(rig, maker), kEdge_px);
         const Lightmap expected = LightmapMaker(rig, std::nullopt, {}).map(rig.sled);
