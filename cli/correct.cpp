@@ -73,6 +73,7 @@ void print_report(const CorrectionReport& report,
         run.skipped.size());
     print_camera(survey);
     print_scale(survey.light);
+    print_relief(survey);
     std::string from;
     if (!report.gain.images.empty()) {
         from = ", taken from " + counted(report.gain.images.size(), "image");

@@ -62,12 +62,14 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
     if (input.json) {
         nlohmann::ordered_json json = to_json(observation, options.output);
         json["camera"] = to_json(survey.camera);
+        if (survey.depth) json["depth"] = to_json(*survey.depth);
         if (survey.navigation->notes()) json["navigation"] = to_json(*survey.navigation->notes());
         say_text(json_text(json));
     } else {
         print_observation(observation, options.output);
         print_camera(survey);
         print_navigation(survey);
+        print_relief(survey);
     }
     return status_of_skips(observation.skipped.size(), survey.files.size(), input);
 }

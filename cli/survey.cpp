@@ -33,6 +33,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 namespace aphotic::cli {
 namespace {
@@ -92,6 +93,14 @@ void print(const MadeSurvey& made) {
         camera.gain_dn_per_e,
         (survey.folder / "navigation.txt").string(),
         (survey.folder / "navigation-measured.txt").string());
+    const TruthAsked& truth = survey.truth;
+    for (const auto& [is_asked, where, what] :
+         {std::tuple{truth.depth, "depth", "depths along the camera's axis"},
+          {truth.normals, "normals", "normals"},
+          {truth.reflectance, "reflectance", "reflectance"},
+          {truth.poses, "colmap", "poses, in COLMAP's text format"}}) {
+        if (is_asked) say("  {}: {}\n", (survey.folder / where).string(), what);
+    }
     print_model_error(model);
 }
 

@@ -313,6 +313,15 @@ void print_navigation(const Survey& survey) {
     say("  navigation: {}\n", words_of(*survey.navigation->notes()));
 }
 
+void print_relief(const Survey& survey) {
+    if (!survey.depth) return;
+    const DepthMaps& depth = *survey.depth;
+    say("  relief: depth maps of {}, {}{}\n",
+        depth.place.string(),
+        depth.is == DepthIs::AlongAxis ? "along the axis" : "along rays",
+        depth.normals == NormalsFrom::Floor ? "; normals of the navigation's floor" : "");
+}
+
 std::size_t AllowedSkips::of(std::size_t images) const {
     // 0.07 of 100 are 7, which their product in doubles misses by its rounding.
     constexpr double kRounding = 1e-9;

@@ -92,6 +92,8 @@ using Settle = std::function<void()>;
 // nothing to say.
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
+// "relief: depth maps of depth, along the axis"
+void print_relief(const Survey& survey);
 
 // "shown as sRGB ..."
 void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder);

@@ -151,7 +151,8 @@ TEST_F(CommandRelief, AStepIsEvenByItsDepthMapAlone) {
 
 // At 2 m, which is the left half's depth.
 TEST_F(CommandRelief, IsLeftOutOfObservedMaps) {
-    done(Arguments("observe step.exr --nav nav.csv --altitude 2 --depth-map axis -o map.exr"));
+    done(Arguments("observe step.exr --nav nav.csv --altitude 2 --depth-map axis -o map.exr"),
+         "relief: depth maps of axis, along the axis");
     const std::vector<float> counts = read_exr(path("map.exr"), {"count.G"});
     for (std::size_t i = 0; i < counts.size(); ++i)
         EXPECT_EQ(counts[i], i % kWidth_px < kWidth_px / 2 ? 1.0F : 0.0F) << i;
