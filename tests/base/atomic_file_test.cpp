@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <linux/magic.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/statfs.h>
 #include <sys/syscall.h>
@@ -278,6 +279,7 @@ TEST(AtomicFile, OfAProcessThatASignalEndsIsRemoved) {
         const TempFolder folder;
         const pid_t child = ::fork();
         if (child == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // else it writes until the disk is full
             std::vector<std::jthread> threads;
             for (int thread = 0; thread < kThreads; ++thread) {
                 threads.emplace_back([&, thread] {
