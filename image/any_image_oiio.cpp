@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "image/any_image.h"
 #include "image/checked_file.h"
+#include "image/colour_profile.h"
 #include "image/decoded_size.h"
 #include "image/exr_header.h"
 #include "image/png_pixels.h"
@@ -268,6 +269,11 @@ extern "C" void aphotic_header_of_image(const std::filesystem::path& file,
     });
 }
 
+static aphotic::ColourProfile profile_of(const aphotic::WrittenImage& image) {
+    if (image.channels.size() == 1) return aphotic::ColourProfile::LinearGrey;
+    return image.is_srgb ? aphotic::ColourProfile::Srgb : aphotic::ColourProfile::Linear;
+}
+
 // Why it could not be written, or nothing.
 static std::string written(const std::filesystem::path& file, const aphotic::WrittenImage& image) {
     WatchedFile watched(file);
@@ -284,14 +290,21 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
         spec.attribute("compression", fmt::format("jpeg:{}", image.jpeg_quality));
         spec.attribute("jpeg:subsampling", "4:4:4");
     }
-    if (image.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:ColorSpace", image.is_srgb ? "sRGB" : "Linear");
+    spec.attribute("Software", "Aphotic " APHOTIC_VERSION);
+    const std::vector<std::uint8_t> profile = aphotic::icc_profile(profile_of(image));
+    spec.attribute("ICCProfile",
+                   OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                   profile.data());
     spec.channelnames = image.channels;
     if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
-    // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
-    constexpr const char* kUnknown = "    :  :     :  :  ";
-    const bool is_dated = !image.date_time.empty();
     const bool is_tiff = std::string_view(output->format_name()) == "tiff";
-    if (is_dated || is_tiff) spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
+    if (!image.date_time.empty()) {
+        spec.attribute("DateTime", image.date_time);
+    } else if (is_tiff) {
+        // Without any, TIFF gets the time of writing; a number is no time, and is left out.
+        spec.attribute("DateTime", 0);
+    }
     if (is_tiff) spec.attribute("tiff:write_exif", 0);  // it reads what it wrote, and cannot here
     output->threads(1);  // images are spread over threads, not their rows
     const bool is_whole = output->open(file.string(), spec) &&

@@ -11,9 +11,11 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <new>
@@ -198,6 +200,11 @@ ExrWriter::ExrWriter(const fs::path& file,
     }
     for (const std::string& name : channels_)
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    // Linear, as all of OpenEXR is. What a camera's channels are called red, green and blue for are
+    // no primaries; programs that ask are told those that they would assume.
+    if (std::ranges::find(channels_, "R") != channels_.end())
+        Imf::addChromaticities(header, Imf::Chromaticities());
+    header.insert("software", Imf::StringAttribute("Aphotic " APHOTIC_VERSION));
     for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
     file_ = std::make_unique<File>(destination_.temporary(), file);
     try {

@@ -39,11 +39,11 @@ ShotExposure exposure_of(const ImageTags& tags) {
     return exposure;
 }
 
-SharedTags tags_of(const ShotExposure& exposure) {
-    using Tags = void (*)(const ShotExposure&, SharedTags&);
+SharedTags tags_of(const ShotExposure& exposure, const std::string& taken_at) {
+    using Tags = void (*)(const ShotExposure&, const std::string&, SharedTags&);
     SharedTags tags;
-    if (exposure.time_s || exposure.iso || exposure.f_number)
-        from_part<Tags>("aphotic_tags_of_exposure")(exposure, tags);
+    if (exposure.time_s || exposure.iso || exposure.f_number || !taken_at.empty())
+        from_part<Tags>("aphotic_tags_of_shot")(exposure, taken_at, tags);
     return tags;
 }
 

@@ -43,7 +43,8 @@ struct ShotExposure {
 [[nodiscard]] ShotExposure exposure_of(const ImageTags& tags);
 
 // To be written; none where nothing is told. Exif holds a time to 1 ns and, of 1 s and more, to
-// 1 us, an f-number to 1e-6, an ISO number without a fraction.
-[[nodiscard]] SharedTags tags_of(const ShotExposure& exposure);
+// 1 us, an f-number to 1e-6, an ISO number without a fraction. taken_at: when it was taken, in UTC,
+// as "YYYY:MM:DD hh:mm:ss"; empty: not told.
+[[nodiscard]] SharedTags tags_of(const ShotExposure& exposure, const std::string& taken_at = {});
 
 }  // namespace aphotic

@@ -65,7 +65,6 @@ const std::set<std::uint16_t> kOfThePicture{
     0x010f,  // Make
     0x0110,  // Model
     0x0112,  // Orientation
-    0x0131,  // Software
     0x0132,  // DateTime
     0x013b,  // Artist
     0x013c,  // HostComputer
@@ -231,8 +230,9 @@ extern "C" void aphotic_exposure_of_tags(const aphotic::ImageTags& tags,
     exposure = tags.exposure;
 }
 
-extern "C" void aphotic_tags_of_exposure(const aphotic::ShotExposure& exposure,
-                                         aphotic::SharedTags& tags) {
+extern "C" void aphotic_tags_of_shot(const aphotic::ShotExposure& exposure,
+                                     const std::string& taken_at,
+                                     aphotic::SharedTags& tags) {
     using namespace aphotic;
     constexpr std::uint32_t kNanoseconds = 1'000'000'000;
     constexpr std::uint32_t kMillionths = 1'000'000;
@@ -243,6 +243,10 @@ extern "C" void aphotic_tags_of_exposure(const aphotic::ShotExposure& exposure,
     if (exposure.f_number)
         made->exif["Exif.Photo.FNumber"] = fraction(*exposure.f_number, kMillionths);
     if (exposure.iso) add_iso(made->exif, *exposure.iso);
+    if (!taken_at.empty()) {
+        made->exif["Exif.Photo.DateTimeOriginal"] = taken_at;
+        made->exif["Exif.Photo.OffsetTimeOriginal"] = "+00:00";
+    }
     made->exposure = exposure_in(made->exif);
     tags = std::move(made);
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 namespace aphotic {
 namespace {
@@ -66,6 +67,13 @@ void require(cairo_status_t status, int width_px, int height_px) {
                    cairo_status_to_string(status));
 }
 
+// A chunk behind the header, its checksum included: sRGB, shown perceptually. Cairo writes none.
+std::string marked_as_srgb(std::string png) {
+    constexpr std::size_t kHeaderEnd = 33;
+    constexpr std::string_view kChunk("\0\0\0\1sRGB\0\xAE\xCE\x1C\xE9", 13);
+    return png.insert(kHeaderEnd, kChunk);
+}
+
 }  // namespace
 
 double srgb_encoded(double linear) {
@@ -116,7 +124,7 @@ std::string png_of(std::span<const std::uint32_t> pixels, int width_px, int heig
         return CAIRO_STATUS_SUCCESS;
     };
     require(cairo_surface_write_to_png_stream(surface.get(), append, &png), width_px, height_px);
-    return png;
+    return marked_as_srgb(std::move(png));
 }
 
 void write_preview(const CameraImage& image,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <map>
 #include <set>
 #include <system_error>
@@ -109,18 +110,20 @@ fs::path ifdo_place(const fs::path& source, const fs::path& folder) {
     return place;
 }
 
-IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
-                                  const fs::path& place,
-                                  const Survey& survey,
-                                  const CorrectionOptions& options,
-                                  const CorrectionReport& report,
-                                  const Rig* rig) {
+namespace {
+
+// Of one of the files that are made of each image.
+IfdoResults write_ifdo(const Ifdo& of_raw,
+                       const fs::path& place,
+                       const Survey& survey,
+                       const CorrectionReport& report,
+                       const IfdoJson& calibration,
+                       const std::function<fs::path(const ImageFile&)>& result_of) {
     std::map<std::string, std::string> items;  // of_raw's, by image
     for (const auto& [name, item] : of_raw.items().items()) items.emplace(item_key(name), name);
     std::set<std::string> skipped;
     for (const Skipped& one : report.run->skipped) skipped.insert(one.image);
 
-    const IfdoJson calibration = calibration_of(survey, report, rig);
     const std::vector<std::pair<std::string, IfdoJson>> ours{
         {"image-quality", "processed"},
         {"image-illumination", "artificial light"},
@@ -130,7 +133,7 @@ IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
     std::string all_hashes;
     for (const ImageFile& file : survey.files) {
         if (skipped.contains(file.source.string())) continue;
-        const fs::path result = results_of(file, options.run.format).front();
+        const fs::path result = result_of(file);
         const auto known = items.find(item_key(file.source));
         if (known == items.end() || still_image(of_raw.items().at(known->second)) == nullptr ||
             results.contains(result.filename().string())) {
@@ -139,7 +142,7 @@ IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
         }
         IfdoJson item = of_raw.items().at(known->second);
         IfdoJson& fields = item.is_array() ? item[0] : item;
-        const std::string hash = sha256_of_file(options.run.folder / result);
+        const std::string hash = sha256_of_file(result);
         fields["image-uuid"] = uuid_of(text_at(fields, "image-uuid") + "\n" + hash);
         fields["image-hash-sha256"] = hash;
         forget_pixels(fields);
@@ -164,6 +167,30 @@ IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
     of_results.set["image-set-items"] = std::move(results);
     write_text_file(place, ifdo_text(of_results));
     return made;
+}
+
+}  // namespace
+
+IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
+                                  const fs::path& place,
+                                  const Survey& survey,
+                                  const CorrectionOptions& options,
+                                  const CorrectionReport& report,
+                                  const Rig* rig) {
+    const IfdoJson calibration = calibration_of(survey, report, rig);
+    const fs::path& folder = options.run.folder;
+    const ResultFormat& format = options.run.format;
+    if (format.srgb) {
+        write_ifdo(of_raw,
+                   folder / kSrgbFolder / place.filename(),
+                   survey,
+                   report,
+                   calibration,
+                   [&](const auto& file) { return folder / srgb_file_of(file, *format.srgb); });
+    }
+    return write_ifdo(of_raw, place, survey, report, calibration, [&](const auto& file) {
+        return folder / results_of(file, format).front();
+    });
 }
 
 }  // namespace aphotic

@@ -12,6 +12,8 @@
 //   image-set-local-path           ".", where the results are
 //   image-entropy, -average-color  left out, with all image-mpeg7: they were of other pixels
 //
+// Images in sRGB, which are what annotators look at, have one of their own beside them.
+//
 // The schema wants UUIDs of version 4: 122 bits of a SHA-256 take the place of random ones, so the
 // same results have the same.
 #pragma once

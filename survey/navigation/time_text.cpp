@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -89,6 +90,14 @@ std::string utc_text(double unix_time_s) {
                        clock.minutes().count(),
                        clock.seconds().count(),
                        clock.subseconds().count());
+}
+
+std::string exif_time(double unix_time_s) {
+    constexpr std::size_t kToTheSecond = 19;
+    std::string text = utc_text(std::floor(unix_time_s)).substr(0, kToTheSecond);
+    std::ranges::replace(text, '-', ':');
+    std::ranges::replace(text, 'T', ' ');
+    return text;
 }
 
 }  // namespace aphotic

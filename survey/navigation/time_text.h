@@ -34,5 +34,7 @@ struct DateAndTime {
 
 // 2024-03-09T12:34:56.789Z
 [[nodiscard]] std::string utc_text(double unix_time_s);
+// 2024:03:09 12:34:56, the fraction of a second left out
+[[nodiscard]] std::string exif_time(double unix_time_s);
 
 }  // namespace aphotic

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "survey/navigation/time_text.h"
 #include "survey/navigation/vehicle_pose.h"
 #include "survey/simulate/random_draw.h"
 
@@ -46,6 +47,14 @@ Leg leg(const FlightRanges& ranges, std::uint64_t seed, int image) {
 // A field of CSV.
 std::string quoted(const std::string& name) {
     return name.find_first_of(",# ") == std::string::npos ? name : '"' + name + '"';
+}
+
+// Ten digits show what is rounded to a step as that, and of any other pose a nanometre.
+std::string pose_text(const Sled& sled) {
+    return fmt::format(",{:.10g},{:.10g},{:.10g}\n",
+                       sled.altitude_m,
+                       sled.pitch_rad * kDegreesPerRadian,
+                       sled.roll_rad * kDegreesPerRadian);
 }
 
 }  // namespace
@@ -104,15 +113,19 @@ std::vector<Leg> as_measured(std::vector<Leg> legs,
 
 std::string navigation_text(const std::vector<Leg>& legs, const std::string& suffix) {
     std::string text = "image,altitude_m,pitch_deg,roll_deg\n";
-    for (const Leg& leg : legs) {
-        // Ten digits show what is rounded to a step as that, and of any other pose a nanometre.
-        text += fmt::format("{},{:.10g},{:.10g},{:.10g}\n",
-                            quoted(leg.name + suffix),
-                            leg.sled.altitude_m,
-                            leg.sled.pitch_rad * kDegreesPerRadian,
-                            leg.sled.roll_rad * kDegreesPerRadian);
-    }
+    for (const Leg& leg : legs) text += quoted(leg.name + suffix) + pose_text(leg.sled);
     return text;
+}
+
+std::string timed_navigation_text(const std::vector<Leg>& legs) {
+    std::string text = "time,altitude_m,pitch_deg,roll_deg\n";
+    for (const Leg& leg : legs) text += utc_text(time_of(leg)) + pose_text(leg.sled);
+    return text;
+}
+
+double time_of(const Leg& leg) {
+    static const double kFirst_s = *unix_time_s("2020-01-01 12:00:00");
+    return kFirst_s + leg.image - 1;
 }
 
 std::vector<Leg> of_vehicle(std::vector<Leg> legs, const Mounting& mounting) {

@@ -62,6 +62,12 @@ struct InstrumentErrors {
 // CSV as navigation_csv.h reads it. Its poses are the vehicle's: from them the camera's follow by
 // the mounting (vehicle_pose.h).
 [[nodiscard]] std::string navigation_text(const std::vector<Leg>& legs, const std::string& suffix);
+
+// The same without names, by the time at which each image was taken, in UTC: an image a second
+// from 2020-01-01 12:00:00 on.
+[[nodiscard]] std::string timed_navigation_text(const std::vector<Leg>& legs);
+[[nodiscard]] double time_of(const Leg& leg);
+
 [[nodiscard]] std::vector<Leg> of_vehicle(std::vector<Leg> legs, const Mounting& mounting);
 
 }  // namespace aphotic

@@ -10,6 +10,7 @@
 #include "image/output_images.h"
 #include "lightmap/lightmap.h"
 #include "rig/geometry.h"
+#include "survey/navigation/time_text.h"
 #include "survey/simulate/colmap_poses.h"
 #include "survey/simulate/floor_texture.h"
 #include "survey/simulate/random_draw.h"
@@ -101,7 +102,7 @@ void write_raw(const SimulatedSurvey& survey, const Leg& leg) {
                      .height_px = truth.height_px,
                      .channels = {"Y"},
                      .planes = plane,
-                     .tags = tags_of(survey.camera.shot)});
+                     .tags = tags_of(survey.camera.shot, exif_time(time_of(leg)))});
 }
 
 // work(leg) of those whose file is not there, some at a time.
@@ -205,8 +206,9 @@ void finish_survey(const SimulatedSurvey& survey) {
     for_missing(survey, "raw", [&](const Leg& leg) { write_raw(survey, leg); });
     const std::vector<Leg> told = of_vehicle(survey.legs, survey.rig.mounting);
     write_text_file(survey.folder / "navigation.txt", navigation_text(told, ".tif"));
-    write_text_file(survey.folder / "navigation-measured.txt",
-                    navigation_text(as_measured(told, survey.errors, survey.seed), ".tif"));
+    const std::vector<Leg> measured = as_measured(told, survey.errors, survey.seed);
+    write_text_file(survey.folder / "navigation-measured.txt", navigation_text(measured, ".tif"));
+    write_text_file(survey.folder / "navigation-timed.txt", timed_navigation_text(measured));
     if (survey.truth.poses)
         write_colmap(survey.folder / "colmap", survey.rig.camera, survey.legs, ".tif");
     write_text_file(survey.folder / kSurveyNotes,

@@ -808,7 +808,7 @@ TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
     }
     write_file(path("set.json"), set.dump());
     done(correct({}));
-    done(correct("--nav set.json --ifdo set.json", "by-ifdo"));
+    done(correct("--nav set.json --ifdo set.json --encode srgb", "by-ifdo"));
     const Json results = json_in("by-ifdo/set.json");
     EXPECT_EQ(results["image-set-header"]["image-set-name"], "a survey");
     EXPECT_EQ(results["image-set-header"]["image-quality"], "processed");
@@ -816,6 +816,15 @@ TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
     for (const auto& [name, item] : results["image-set-items"].items()) {
         EXPECT_EQ(item["image-hash-sha256"], sha256_of_file(path("by-ifdo/" + name)));
         EXPECT_EQ(text_of("by-ifdo/" + name), text_of("out/" + name));
+    }
+    // What annotators look at.
+    const Json shown = json_in("by-ifdo/srgb/set.json");
+    ASSERT_EQ(shown["image-set-items"].size(), 4U);
+    for (const auto& [name, item] : shown["image-set-items"].items()) {
+        EXPECT_EQ(item["image-hash-sha256"], sha256_of_file(path("by-ifdo/srgb/" + name)));
+        EXPECT_NE(item["image-uuid"],
+                  results["image-set-items"][fs::path(name).replace_extension(".tif").string()]
+                         ["image-uuid"]);
     }
     write_file(path("set.json"), R"({"image-set-header": {}})");
     refused(correct("--ifdo set.json", "none"), "set.json: image-set-items: found none");

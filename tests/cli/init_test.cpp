@@ -11,6 +11,7 @@ using Init = CommandTest;
 
 TEST_F(Init, WritesARigWithAllThatItNames) {
     for (const std::string name : {"habcam", "led", "auv"}) {
+        std::filesystem::create_directory(path(name));
         done({"init", name + "/my-rig.toml", "--like", name}, "aphotic plan " + name);
         done({"plan", name + "/my-rig.toml"}, "Still guesses of the template");
     }

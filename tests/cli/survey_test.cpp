@@ -57,6 +57,21 @@ TEST_F(SurveyCommand, IsCorrectedToItsTexture) {
     }
 }
 
+// A dive by its clock: the navigation knows no names, the images when they were taken.
+TEST_F(SurveyCommand, CanBeCorrectedByTheTimeOfEachImage) {
+    done("survey rig.toml --images 3 -o out");
+    const Arguments common("--rig rig.toml --bayer RGGB --format exr -o");
+    done(Arguments("correct out/raw --nav out/navigation-measured.txt") + common +
+         Arguments("by-name"));
+    done(Arguments("correct out/raw --nav out/navigation-timed.txt") + common +
+         Arguments("by-time"));
+    for (const char* name : {"000001.exr", "000002.exr", "000003.exr"}) {
+        const std::vector<std::string> rgb{"R", "G", "B"};
+        EXPECT_EQ(ExrReader(path("by-time") / name).planes(rgb),
+                  ExrReader(path("by-name") / name).planes(rgb));
+    }
+}
+
 TEST_F(SurveyCommand, FliesTheUsersNavigation) {
     write_file(path("dive.csv"),
                "image,altitude_m,pitch_deg,roll_deg\nB 1.jpg,2,1,0\nA.jpg,2.5,-1,3\n");

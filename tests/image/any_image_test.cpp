@@ -420,6 +420,36 @@ TEST(AnyImage, SamplesBesideAlphaAreAsStored) {
     }
 }
 
+// As OpenImageIO reads it: what other programs make of the numbers, who wrote them, and no time
+// where none is known.
+TEST(AnyImage, SaysWhatItsNumbersMean) {
+    const TempFolder folder;
+    const std::vector<float> planes(std::size_t{3} * kWidth * kHeight, 0.5F);
+    for (const char* name : {"a.tif", "a.png", "a.jpg"}) {
+        for (const bool is_srgb : {false, true}) {
+            const std::filesystem::path file = folder.path() / name;
+            write_any_image(file,
+                            {.width_px = kWidth,
+                             .height_px = kHeight,
+                             .channels = {"R", "G", "B"},
+                             .planes = planes,
+                             .type = SampleType::Bits8,
+                             .is_srgb = is_srgb});
+            auto header = header_of_image(file);
+            EXPECT_EQ(header["ICCProfile:profile_description"],
+                      is_srgb ? "sRGB" : "Linear RGB, Rec. 709 primaries")
+                << name;
+            EXPECT_FALSE(header.contains("DateTime")) << name;
+            const bool is_signed = header["Software"].starts_with("Aphotic ");
+            EXPECT_TRUE(is_signed || file.extension() == ".jpg") << name;
+        }
+    }
+    const std::filesystem::path grey = folder.path() / "grey.tif";
+    write_any_image(
+        grey, {.width_px = kWidth, .height_px = 3 * kHeight, .channels = {"Y"}, .planes = planes});
+    EXPECT_EQ(header_of_image(grey)["ICCProfile:profile_description"], "Linear grey");
+}
+
 // The limit of a process stands for the disk's; both fail a write.
 TEST(AnyImage, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
     const TempFolder folder;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/preview.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "image/any_image.h"
 #include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
@@ -149,6 +151,16 @@ TEST(Preview, FindsTheQuantileOfALargeImage) {
     constexpr int kOneByte = 1;
     const auto at_quantile = static_cast<std::size_t>(0.995 * kSide * kSide);
     EXPECT_NEAR(picture.pixels[at_quantile].red, srgb_byte(0.9), kOneByte);
+}
+
+// By libpng's word, behind a checksum that it verifies.
+TEST(Preview, SaysThatItIsSrgb) {
+    const TempFolder folder;
+    const CameraImage image{.width_px = 2, .height_px = 1, .samples = {1, 1, 1, 1, 1, 1}};
+    write_preview(image, {1.0, 1.0, 1.0}, {}, folder.path() / "preview.png");
+    EXPECT_EQ(header_of_image(folder.path() / "preview.png")["oiio:ColorSpace"], "sRGB");
+    const std::string png = read_text_file(folder.path() / "preview.png");
+    EXPECT_NE(png.find("sRGB"), std::string::npos);
 }
 
 TEST(Preview, IsBrighterByPowersOfTwo) {
