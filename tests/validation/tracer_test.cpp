@@ -494,7 +494,7 @@ TEST(TracerSymmetry, TopIsForwardAndRightIsStarboard) {
 
 // --- The highlight -----------------------------------------------------------------------
 
-// docs/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera looking
+// docs/background/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera looking
 // ahead: the mirrored ray goes ahead, away from the lamp.
 TEST(TracerHighlight, IsNothingOnTheSideAwayFromTheMirroredRay) {
     Rig rig = plain_rig(1, 3, 2.0);
