@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 #include <signal.h>
-#include <string.h>  // strsignal
+#include <string.h>  // strlen, strsignal
 #include <time.h>
 #include <unistd.h>
 
@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <mutex>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -24,6 +25,7 @@ std::atomic<bool> is_ending = false;
 constexpr std::size_t kMostTemporaries = 4096;
 std::array<std::atomic<const char*>, kMostTemporaries> temporaries{};
 std::array<std::atomic<bool>, kSignals.size()> has_host_handler{};
+std::atomic<const char*> last_words = nullptr;
 static_assert(std::atomic<int>::is_always_lock_free &&
               std::atomic<const char*>::is_always_lock_free);
 
@@ -60,6 +62,13 @@ void wait_if_ending() {
     while (is_ending) ::pause();
 }
 
+void say_last_words() {
+    const char* const words = last_words;
+    if (words == nullptr) return;
+    // Whether they arrive changes nothing about the end.
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, ::strlen(words));
+}
+
 extern "C" void on_signal(int signal) {
     const int error = errno;
     bool is_noted = holds > 0;
@@ -72,6 +81,7 @@ extern "C" void on_signal(int signal) {
     }
     if (is_ending.exchange(true)) return;  // another thread has the first of two signals
     remove_temporaries();
+    say_last_words();
     end_by_signal(signal);
 }
 
@@ -131,6 +141,18 @@ RemovedBySignal::RemovedBySignal(const std::filesystem::path& file) : file_(file
 
 RemovedBySignal::~RemovedBySignal() {
     if (place_ != nullptr) *place_ = nullptr;
+    wait_if_ending();
+    end_use(false);
+}
+
+LastWords::LastWords(std::string words) : words_(std::move(words)) {
+    begin_use();
+    wait_if_ending();
+    last_words = words_.c_str();
+}
+
+LastWords::~LastWords() {
+    last_words = nullptr;
     wait_if_ending();
     end_use(false);
 }

@@ -11,10 +11,10 @@
 // or a scheduler sees which signal it was. A signal that nobody asked about ends us when the last
 // hold goes.
 //
-// Without a hold they end us at once, as ever, but for one thing: the files that a
-// RemovedBySignal names are removed first. Where the host of our libraries has a handler of its
-// own, the signal is noted, and raised again when the last of these objects goes. Signals that are
-// ignored (nohup) stay so.
+// Without a hold they end us at once, as ever, but for two things: the files that a
+// RemovedBySignal names are removed first, and what LastWords say is printed. Where the host of our
+// libraries has a handler of its own, the signal is noted, and raised again when the last of these
+// objects goes. Signals that are ignored (nohup) stay so.
 #pragma once
 
 #include <atomic>
@@ -54,6 +54,18 @@ class RemovedBySignal {
   private:
     std::string file_;
     std::atomic<const char*>* place_ = nullptr;
+};
+
+// Written to standard error by a signal that ends us at once, while this lives. One at a time.
+class LastWords {
+  public:
+    explicit LastWords(std::string words);
+    ~LastWords();
+    LastWords(const LastWords&) = delete;
+    LastWords& operator=(const LastWords&) = delete;
+
+  private:
+    std::string words_;
 };
 
 // Throws Interrupted when a signal was noted.

@@ -1,31 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One line on the terminal that says how far the work is and how long it will take. Silent when
-// stderr is no terminal, and for the first second.
+// How far the work is and how long it will take, on standard error: on a terminal one line that is
+// written over, and "aphotic: rendering: 3 of 36 frames, 8 %, 2:10 left" every ten seconds where
+// it is redirected. Silent until the first second (ten seconds) is over, and when hushed. A thread
+// of its own repeats it, so that work that reports seldom is seen to be alive.
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
 #include <string_view>
+#include <thread>
 
 namespace aphotic {
+
+// For the whole process: no progress is shown from now on.
+void hush_progress();
+
+// "41 s", "2:10 min", "1:02:10 h".
+[[nodiscard]] std::string duration_in_words(double seconds);
 
 class ProgressLine {
   public:
     ProgressLine();
-    ~ProgressLine();  // wipes the line
+    explicit ProgressLine(std::chrono::milliseconds between);  // as often as that
+    ~ProgressLine();                                           // wipes the line
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    // share: of the work, 0 to 1.
+    // share: of this part of the work, 0 to 1. Where it falls another part begins, and the time
+    // left is that part's.
     void show(std::string_view what, double share);
 
     // Wipes the line until it is shown again, for something else to be said.
     void wipe();
 
   private:
-    std::chrono::steady_clock::time_point start_;
-    bool is_terminal_;
-    bool shown_ = false;
+    using Clock = std::chrono::steady_clock;
+
+    void repeat(const std::stop_token& stop);
+    void print_if_due();
+    void erase();
+
+    const bool is_terminal_;
+    const std::chrono::milliseconds between_;
+    std::mutex mutex_;
+    std::condition_variable_any ended_;
+    std::string what_;
+    double share_ = 0.0;
+    Clock::time_point part_begins_;
+    Clock::time_point due_;
+    bool is_shown_ = false;
+    std::jthread repeater_;  // last, for it uses the others
 };
 
 }  // namespace aphotic

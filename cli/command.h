@@ -26,6 +26,7 @@ struct Command {
     Action (*configure)(CLI::App& options);
 };
 
+extern const Command kInit;
 extern const Command kRender;
 extern const Command kPlan;
 extern const Command kGenerate;

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/interruption.h"
 #include "base/printable.h"
+#include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/completion.h"
@@ -35,7 +36,8 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender,
+constexpr std::array kCommands{&kInit,
+                               &kRender,
                                &kPlan,
                                &kGenerate,
                                &kIntegrate,
@@ -54,14 +56,15 @@ constexpr std::array kCommands{&kRender,
                                &kData,
                                &kHelp};
 
-ExitStatus run(const Action& action) {
+// keeps: what a signal leaves of the work.
+ExitStatus run(const Action& action, const std::string& keeps) {
+    const aphotic::LastWords words(fmt::format("aphotic: interrupted; {}\n", keeps));
     try {
         const ExitStatus status = action();
         flush_said();
         return status;
     } catch (const aphotic::Interrupted& interrupted) {
-        warn("{}; finished work is kept: run the same command again to continue",
-             interrupted.what());
+        warn("interrupted; {}", keeps);
         aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
         warn_text(error.what());
@@ -161,6 +164,7 @@ int main(int argc, char** argv) {
 
     aphotic::set_page_origin(page_origin(argc, argv));
     Action chosen;
+    std::string keeps;
     add_completion(app, chosen);
     add_manual(app, chosen);
     for (const Command* command : kCommands) {
@@ -168,8 +172,10 @@ int main(int argc, char** argv) {
         describe(*sub);
         const Action action = command->configure(*sub);
         add_set_option(*sub);
+        add_flag(*sub, "--quiet", aphotic::hush_progress);
         add_common_checks(*sub);
-        sub->callback([&chosen, action, sub] {
+        sub->callback([&chosen, &keeps, action, sub] {
+            keeps = what_is_kept(*sub);
             chosen = [action, sub] {
                 require_separate_files(*sub);
                 for (const auto& place : written_places(*sub)) {
@@ -182,8 +188,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (chosen && error.get_exit_code() == 0) return run(chosen);
+        if (chosen && error.get_exit_code() == 0) return run(chosen, keeps);
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(chosen);
+    return run(chosen, keeps);
 }

@@ -38,6 +38,12 @@ void describe(CLI::App& command) {
     if (const auto footer = words["footer"].value<std::string>()) command.footer(*footer);
 }
 
+std::string what_is_kept(const CLI::App& command) {
+    const auto keeps = all_words()[command.get_name()]["keeps"].value<std::string>();
+    return keeps ? *keeps + " are kept: run the same command again to continue"
+                 : "run the same command again to start afresh";
+}
+
 std::string spellings_of(const CLI::App& command, const std::string& name) {
     return words_of(command, name)["names"].value_or(name);
 }

@@ -30,6 +30,9 @@ namespace cli {
 // options.
 void describe(CLI::App& command);
 
+// What an interrupted run of it leaves, and how to go on.
+[[nodiscard]] std::string what_is_kept(const CLI::App& command);
+
 // All spellings of an option or argument of the command, by the first long one: "--output".
 [[nodiscard]] std::string spellings_of(const CLI::App& command, const std::string& name);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
+#include "base/atomic_file.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/option_words.h"
@@ -10,6 +11,7 @@
 #include "cli/terminal.h"
 #include "report/plot.h"
 #include "report/svg.h"
+#include "rig/file/rig_template.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -119,10 +121,26 @@ void print_needs(const PlannedNeeds& needs, std::size_t frames, bool has_scene) 
 struct Planned {
     PlannedRender render;
     SceneSet scenes;
+    std::string rig_file;
+    std::vector<UnmeasuredLine> unmeasured;
 };
 
+Json to_json(const std::vector<UnmeasuredLine>& unmeasured) {
+    Json lines = Json::array();
+    for (const auto& [line, text] : unmeasured) lines.push_back({{"line", line}, {"text", text}});
+    return lines;
+}
+
+void print_unmeasured(const Planned& made) {
+    if (made.unmeasured.empty()) return;
+    say("\nStill guesses of the template; measure each, or delete its mark:\n");
+    for (const auto& [line, text] : made.unmeasured)
+        say("  {}:{}: {}\n", made.rig_file, line, text);
+}
+
 Json to_json(const Planned& made) {
-    const auto& [planned, scenes] = made;
+    const PlannedRender& planned = made.render;
+    const SceneSet& scenes = made.scenes;
     const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     Json json{{"rig_title", manifest.rig_title},
@@ -137,7 +155,8 @@ Json to_json(const Planned& made) {
               {"frames", manifest.frames.size()},
               {"wavelengths", wavelengths_of(manifest)},
               {"omissions", Json::array()},
-              {"needs", json_of(planned_needs(scenes))}};
+              {"needs", json_of(planned_needs(scenes))},
+              {"unmeasured", to_json(made.unmeasured)}};
     if (manifest.rig_settings) json["rig_settings"] = manifest.rig_settings->keys;
     put_promises(json, manifest);
     put_model_error(json, planned.model);
@@ -209,7 +228,8 @@ void print_port(const PlannedRender& planned) {
 }
 
 void print(const Planned& made) {
-    const auto& [planned, scenes] = made;
+    const PlannedRender& planned = made.render;
+    const SceneSet& scenes = made.scenes;
     const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     say("{}: {} x {} pixels, {} in {}, {}\n",
@@ -240,11 +260,11 @@ void print(const Planned& made) {
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
     print_needs(planned_needs(scenes), manifest.frames.size(), manifest.scene.has_value());
-    if (plan.omissions.empty()) return;
-    say("\nLeft out:\n");
+    if (!plan.omissions.empty()) say("\nLeft out:\n");
     for (const Omission& omission : plan.omissions) {
         say("  {}: {}\n", omission.what, omission.reason);
     }
+    print_unmeasured(made);
 }
 
 // --- The plot -----------------------------------------------------------------------------------
@@ -353,7 +373,12 @@ Action configure_plan(CLI::App& app) {
         PlannedRender render = plan_rig(options->planning);
         SceneSet scenes = scenes_of(render, options->planning);
         if (!options->plot.empty()) plot_plan(render.rig, render.plan, options->plot);
-        show(Planned{std::move(render), std::move(scenes)}, options->json);
+        const std::string& file = options->planning.rig_file;
+        show(Planned{.render = std::move(render),
+                     .scenes = std::move(scenes),
+                     .rig_file = file,
+                     .unmeasured = unmeasured_lines(read_text_file(file))},
+             options->json);
         return kDone;
     };
 }

@@ -111,7 +111,11 @@ PlannedRender plan_rig(const PlanningOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);
     const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
-    RenderPlan plan = naming(options.rig_file, [&] { return plan_render(rig, request); });
+    RenderPlan plan = [&] {
+        ProgressLine line;
+        line.show("planning", 0.0);
+        return naming(options.rig_file, [&] { return plan_render(rig, request); });
+    }();
     const auto model = model_error(rig, options.rig_file, options.model_tolerance);
     return {
         .rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count(), .model = model};

@@ -24,23 +24,6 @@
 namespace aphotic::cli {
 namespace {
 
-// A line for each part of the work: it tells how long that part will take.
-class ProgressOfParts {
-  public:
-    void show(std::string_view what, double share) {
-        if (!line_ || share < share_) line_.emplace();
-        share_ = share;
-        line_->show(what, share);
-    }
-    void wipe() {
-        if (line_) line_->wipe();
-    }
-
-  private:
-    std::optional<ProgressLine> line_;
-    double share_ = 0.0;
-};
-
 std::string words_of(const ShotExposure& exposure) {
     std::string words;
     const auto add = [&](std::optional<double> number, std::string_view format, double unit) {
@@ -331,7 +314,7 @@ std::size_t AllowedSkips::of(std::size_t images) const {
 }
 
 RunWatch terminal_watch(bool strict) {
-    const auto line = std::make_shared<ProgressOfParts>();
+    const auto line = std::make_shared<ProgressLine>();
     return {.progress = [line](std::string_view what, double share) { line->show(what, share); },
             .skipped =
                 [line](const Skipped& one) {

@@ -44,6 +44,22 @@ TEST(Interruption, WithoutAHoldASignalEndsAtOnce) {
     }
 }
 
+TEST(Interruption, LastWordsAreSaidByASignalAlone) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(status_of([] {
+                  const LastWords words("images are kept\n");
+                  ::raise(SIGTERM);
+                  return kWentOn;
+              }),
+              128 + SIGTERM);
+    EXPECT_EQ(status_of([] {
+                  { const LastWords gone("images are kept\n"); }
+                  return kWentOn;
+              }),
+              kWentOn);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "images are kept\n");
+}
+
 TEST(Interruption, IsToldToWhoeverAsks) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         EXPECT_EQ(status_of([&] {

@@ -46,8 +46,8 @@ inline std::string small_scene(const std::filesystem::path& file, int coarser = 
     std::smatch found;
     const std::regex resolution(R"(\nresolution\s*=\s*\[(\d+), (\d+)\])");
     const std::regex pitch(R"(\npixel_pitch_um\s*=\s*([0-9.]+))");
-    if (!std::regex_search(text, found, resolution))
-        throw std::runtime_error("no resolution in " + file.string());
+    if (!std::regex_search(text, found, resolution))  // it is the calibration's
+        return replaced(text, "[camera]\n", fmt::format("[camera]\nscale = {}\n", 1.0 / coarser));
     const int width = std::stoi(found[1]) / coarser;
     const int height = std::stoi(found[2]) / coarser;
     const std::string size = fmt::format("\nresolution = [{}, {}]", width, height);

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/progress.h"
+
+#include <gtest/gtest.h>
+
+namespace aphotic::progress_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Standard error, which is a file here, as by a redirection.
+template <typename Work>
+std::string printed_by(const Work& work) {
+    testing::internal::CaptureStderr();
+    work();
+    return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, TimesAreInTheUnitsThatPeopleRead) {
+    EXPECT_EQ(duration_in_words(0.2), "0 s");
+    EXPECT_EQ(duration_in_words(41.4), "41 s");
+    EXPECT_EQ(duration_in_words(59.6), "1:00 min");
+    EXPECT_EQ(duration_in_words(130.0), "2:10 min");
+    EXPECT_EQ(duration_in_words(3599.4), "59:59 min");
+    EXPECT_EQ(duration_in_words(3725.0), "1:02 h");
+}
+
+TEST(Progress, AFileHasALineWithTheTimeLeft) {
+    const std::string printed = printed_by([] {
+        ProgressLine line(1ms);
+        std::this_thread::sleep_for(5ms);
+        line.show("rendering", 0.25);
+    });
+    EXPECT_TRUE(printed.starts_with("aphotic: rendering: 25 %, 0 s left\n")) << printed;
+    EXPECT_EQ(printed.find('\r'), std::string::npos);
+}
+
+TEST(Progress, IsSilentUntilItIsDue) {
+    EXPECT_EQ(printed_by([] {
+                  ProgressLine line(1h);
+                  line.show("rendering", 0.25);
+                  line.wipe();
+              }),
+              "");
+}
+
+// What share is left is that of the part under way, not of all that went before.
+TEST(Progress, APartHasItsOwnTime) {
+    const std::string printed = printed_by([] {
+        ProgressLine line(1ms);
+        line.show("reading", 0.9);
+        std::this_thread::sleep_for(1100ms);
+        line.show("fitting", 0.5);  // begins anew: 0.5 s of it are no second
+        std::this_thread::sleep_for(20ms);
+    });
+    EXPECT_NE(printed.find("fitting: 50 %, 0 s left"), std::string::npos) << printed;
+}
+
+TEST(Progress, IsRepeatedWhileNothingIsReported) {
+    const std::string printed = printed_by([] {
+        ProgressLine line(1ms);
+        line.show("planning", 0.0);
+        std::this_thread::sleep_for(1s);  // a thousand times as long as a line waits
+    });
+    EXPECT_NE(printed.find("aphotic: planning: 0 s so far\naphotic: planning: 0 s so far\n"),
+              std::string::npos)
+        << printed;
+}
+
+}  // namespace
+}  // namespace aphotic::progress_test
