@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tables of docs/water.md: the model of water that scatters over light of all orders, in waters
-// from clear to harbour, by phase functions, altitudes and beams.
+// The tables of docs/reference/water.md: the model of water that scatters over light of all orders,
+// in waters from clear to harbour, by phase functions, altitudes and beams.
 //
 //   all_orders [PATHS]        a line a rig, as Markdown, and then a line a cut
 //

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The table of extremes as Markdown, row by row: both renderers against long double
-// (docs/accuracy.md).
+// (docs/background/accuracy.md).
 //
 //   extremes DIR [WIDTH]    of images WIDTH pixels wide, 24 unless said; rigs and images stay in
 //   DIR

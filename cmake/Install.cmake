@@ -21,7 +21,8 @@ install(FILES
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/scenes)
 install(DIRECTORY plugin/include/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/include)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+    FILES_MATCHING PATTERN *.md PATTERN *.csv PATTERN *.svg PATTERN *.png PATTERN *.jpg)
 install(DIRECTORY workflow config DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic)
 
 # The command says itself what a shell and man should know of it. The names are those that each shell looks for.

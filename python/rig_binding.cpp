@@ -75,7 +75,7 @@ Array<double, 2> values_of(const Table& table) {
 
 void bind_rig(nb::module_& module) {
     nb::class_<TextRig>(
-        module, "Rig", "A sled, its camera, strobes, water and floor (docs/rig.md).")
+        module, "Rig", "A sled, its camera, strobes, water and floor (docs/reference/rig.md).")
         .def_static(
             "load",
             [](const fs::path& file) { return TextRig(RigText(file)); },

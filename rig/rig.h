@@ -36,7 +36,7 @@ struct Sled {
 
 struct Seafloor {
     Spectrum reflectance;
-    double phong = 0.0;  // POV-Ray's own Phong highlight; see docs/physics.md
+    double phong = 0.0;  // POV-Ray's own Phong highlight; see docs/background/physics.md
     double phong_size = 40.0;
 };
 

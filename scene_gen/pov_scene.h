@@ -4,9 +4,9 @@
 //
 // A frame carries up to three wavelengths, one in each of the image's channels red, green and
 // blue: POV-Ray never mixes them. A pixel of the frame is, in the channel of lambda, the radiance
-// L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h). Where a beam takes a
-// filter shell (beam_sdl.h), the scene's unit is so small that shells, a thousandth of it in size,
-// shadow no pixel.
+// L(lambda) of docs/background/physics.md times 2^e, the frame's exposure (exposure.h). Where a
+// beam takes a filter shell (beam_sdl.h), the scene's unit is so small that shells, a thousandth of
+// it in size, shadow no pixel.
 //
 // Behind a port a frame is rendered with the refractive indices of one wavelength
 // (frame_groups.h).

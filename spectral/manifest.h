@@ -88,8 +88,8 @@ struct ManifestVeil {
     std::optional<ManifestPovrayVeil> povray{};
 };
 
-// What the model of water that scatters leaves out, as estimated (docs/water.md): of each channel's
-// signal, rms over the image. No part of the promise.
+// What the model of water that scatters leaves out, as estimated (docs/reference/water.md): of each
+// channel's signal, rms over the image. No part of the promise.
 struct ManifestModel {
     std::array<double, kChannels> error{};
 };

@@ -169,7 +169,7 @@ bool is_of_water(CurveRole role) {
 
 constexpr std::string_view kDaylightsLoss =
     "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
-    "docs/water.md";
+    "docs/reference/water.md";
 
 // The most common of mistakes, and one that no image shows: where a table says so itself, it is
 // said. Not asked of a title, which may tell what a was derived from.

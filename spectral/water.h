@@ -14,7 +14,8 @@
 // uniform_loss  scattering as one wavelength-free loss (the paper's assumption 1)       [1/m]
 //
 // K is neither the beam attenuation c = a + b nor the diffuse attenuation K_d of daylight. The cut
-// is chosen by the light of all orders (validation/monte_carlo.h): docs/water.md has the table.
+// is chosen by the light of all orders (validation/monte_carlo.h): docs/reference/water.md has the
+// table.
 //
 // With multiple = 0 no table is read, so none need cover the range.
 // K = 0 at every wavelength is bare air: is_clear() holds.

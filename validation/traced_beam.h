@@ -32,7 +32,7 @@ namespace aphotic {
 
 // Across and along an emitter or a pattern, unit vectors: the way forward as it lies in the plane
 // across the axis, or down within a millionth of a radian of fore and aft, and what is to its right
-// (docs/rig.md).
+// (docs/reference/rig.md).
 struct StrobeSides {
     Eigen::Vector3d across;
     Eigen::Vector3d along;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Light of an underwater camera sled: rig in, arrays out. See docs/python.md."""
+"""Light of an underwater camera sled: rig in, arrays out. See docs/guides/python.md."""
 
 from ._aphotic import (
     Corrected,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads a rig file (TOML) into a Rig in SI. The schema is in docs/rig.md.
+// Reads a rig file (TOML) into a Rig in SI. The schema is in docs/reference/rig.md.
 //
 // Every value is checked for type, unit, range and finiteness; every key must be known. An
 // error is an InputError of the form

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of docs/physics.md on blocks of an image, and its derivatives over all that a fit looks
-// for, by the kernel's own formulas (light/floor_ray.h):
+// The light of docs/background/physics.md on blocks of an image, and its derivatives over all that
+// a fit looks for, by the kernel's own formulas (light/floor_ray.h):
 //
 //   L_c = V sum_s P_s [ B I(w) cos(i)/(pi d^2) T_c(d + r)
 //                       + sum_i int p_i(psi) I(w) V_ic(t + d) / d^2 dt ]

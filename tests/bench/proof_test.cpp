@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The core of the surveys in docs/accuracy.md, with half as many pixels a side: what POV-Ray
-// rendered, divided by the lightmap of each image's own altitude and attitude.
+// The core of the surveys in docs/background/accuracy.md, with half as many pixels a side: what
+// POV-Ray rendered, divided by the lightmap of each image's own altitude and attitude.
 #include "bench/survey/chart.h"
 #include "image/output_images.h"
 #include "support/run_command.h"

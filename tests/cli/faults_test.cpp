@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
-// manifests, POV-Ray, and users who edit their scene too early.
+// What breaks while a command runs, or between two runs (docs/develop/faults.md): disks, folders,
+// frames, manifests, POV-Ray, and users who edit their scene too early.
 #include "base/sha256.h"
 #include "base/work_folder.h"
 #include "image/exr.h"

@@ -91,8 +91,8 @@ TEST_F(CommandLightmap, SaysWhatItDidInJson) {
     EXPECT_EQ(reader.attribute("aphotic:rig_sha256"), said["rig_sha256"]);
 }
 
-// What docs/lightmaps.md promises: the error that is asked for, 1e-6 of tiles and 7e-7 that floats
-// round; of ports what was measured; of emitters the lamps that stand for them.
+// What docs/guides/lightmaps.md promises: the error that is asked for, 1e-6 of tiles and 7e-7 that
+// floats round; of ports what was measured; of emitters the lamps that stand for them.
 TEST_F(CommandLightmap, PromisesWhatHolds) {
     const std::string off_edges = " of a signal off the beams' edges";
     done(lightmap(), "exact to 1.2e-05" + off_edges + ";\n");

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The workflow by real Snakemake, on this machine and by Slurm on a node of its own, and
-// docs/workflow.md's line by real GNU parallel. Snakemake is stopped midway and started again, and
-// one job fails at first. In the end all images are those of the command by itself, bit for bit.
+// docs/guides/cluster.md's line by real GNU parallel. Snakemake is stopped midway and started
+// again, and one job fails at first. In the end all images are those of the command by itself, bit
+// for bit.
 #include "base/atomic_file.h"
 #include "plugin/process.h"
 #include "support/command_under_way.h"
@@ -220,7 +221,7 @@ TEST_F(Workflow, BySlurm) {
                              "_water.multiple=0.5/image.exr"));
 }
 
-// The line of docs/workflow.md.
+// The line of docs/guides/cluster.md.
 TEST_F(Workflow, ByGnuParallel) {
     if (!has_program("parallel")) GTEST_SKIP() << "GNU parallel is not installed";
     const std::string parallel =

@@ -215,7 +215,7 @@ TEST(AnyImage, ZerosInPlaceOfTheRestAreRefusedWhereTheyAreNoPixels) {
         EXPECT_TRUE(is_refused(tiff(compression))) << compression;
     }
     EXPECT_TRUE(is_refused({.file = "a.png"}));
-    // Zeros are a code of JPEG's, too; docs/surveys.md says so.
+    // Zeros are a code of JPEG's, too; docs/guides/correct.md says so.
     for (const char* compression : {"none", "jpeg"}) {
         EXPECT_FALSE(is_refused(tiff(compression))) << compression;
     }
@@ -268,7 +268,7 @@ TEST(AnyImage, ATiffIsHeldAgainstItsOwnDirectoryInEitherOrderOfBytes) {
 
 // Whether a byte that flips is noticed. Where the format has a checksum of its pixels, always: PNG
 // anywhere, deflated TIFF and EXR in their strips, tiles or chunks. The rest has none
-// (docs/faults.md); there, whatever is found is said in one line.
+// (docs/develop/faults.md); there, whatever is found is said in one line.
 enum class Checksum { None, OfPixels, OfAll };
 
 Checksum checksum_of(const Format& format) {

@@ -162,9 +162,9 @@ def test_others_run_meanwhile(rig_file):
 
 
 def test_the_manuals_example_runs(monkeypatch, capsys):
-    manual = (SOURCE / "docs/python.md").read_text()
+    manual = (SOURCE / "docs/guides/python.md").read_text()
     example = re.search(r"```python\n(.*?)```", manual, re.S).group(1)
     assert len(example.strip().splitlines()) <= 10
     monkeypatch.chdir(SOURCE)
-    exec(compile(example, "docs/python.md", "exec"), {})
+    exec(compile(example, "docs/guides/python.md", "exec"), {})
     assert len(capsys.readouterr().out.splitlines()) == 4

@@ -330,7 +330,7 @@ TEST(Plausibility, EveryNumberOfARigIsJudged) {
                                                        {"`[beam.NAME]`", "beam.*."},
                                                        {"`[[strobe]]`", "strobe[]."},
                                                        {"`[[object]]`", "object[]."}};
-    std::istringstream manual(read_text_file(APHOTIC_SOURCE_DIR "/docs/rig.md"));
+    std::istringstream manual(read_text_file(APHOTIC_SOURCE_DIR "/docs/reference/rig.md"));
     std::string line;
     std::string prefix;
     std::size_t keys = 0;

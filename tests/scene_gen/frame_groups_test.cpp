@@ -35,7 +35,8 @@ TEST(CornerShift, IsZeroWithoutAPort) {
     EXPECT_EQ(corner_shift_px(rig, 650.0, 450.0), 0.0);
 }
 
-// docs/physics.md: 6.1 pixels in the corners of scenes/port.toml, on a level floor at 2 m.
+// docs/background/physics.md: 6.1 pixels in the corners of scenes/port.toml, on a level floor at 2
+// m.
 TEST(CornerShift, HasTheFigureOfTheManual) {
     constexpr double kTwoDigits = 0.05;
     EXPECT_NEAR(corner_shift_px(rig_of("port.toml"), 450.0, 650.0), 6.1, kTwoDigits);

@@ -358,7 +358,8 @@ TEST(PathRange, EndsWhereTheClearestWavelengthDoes) {
     EXPECT_LE(paths.longest_m, end_m * kStep);
 }
 
-// Light of one strobe on one floor point, by docs/physics.md but for spectrum and reflectance.
+// Light of one strobe on one floor point, by docs/background/physics.md but for spectrum and
+// reflectance.
 double light_of(const Rig& rig, const Strobe& strobe, const Seen& seen, double K_per_m) {
     const Vector3d towards = seen.point_m - strobe.position_m;
     const double d_m = towards.norm();

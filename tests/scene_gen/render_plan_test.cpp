@@ -274,7 +274,8 @@ TEST(RenderPlan, CountsTheErrorOfAnEmittersLamps) {
 
 // --- Equal bands, listed wavelengths --------------------------------------------------- --------
 
-// docs/physics.md has 36 bands err by 1.3e-3 over 4 m; the weights are widths times responses.
+// docs/background/physics.md has 36 bands err by 1.3e-3 over 4 m; the weights are widths times
+// responses.
 TEST(RenderPlan, OfEqualBandsIsTheMidpointRule) {
     PlanRequest request;
     request.bands = 36;

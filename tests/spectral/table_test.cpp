@@ -167,7 +167,7 @@ TEST(CurvesOf, RefusesAHeaderInAnotherUnit) {
 TEST(CurvesOf, RefusesDaylightsAttenuation) {
     const std::string why =
         "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
-        "docs/water.md";
+        "docs/reference/water.md";
     for (const char* column : {"Kd_per_m", "K_d", "kd490", "diffuse_attenuation_per_m"}) {
         const std::string header = std::string("wavelength_nm,") + column;
         EXPECT_EQ(curve_error(header + "\n400,0.1\n", CurveRole::WaterAbsorption),

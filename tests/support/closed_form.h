@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The radiance that a rig's pixel must have, by the formulas of docs/physics.md, written for the
-// tests and from nothing but the rig: no geometry or light of the code under test.
+// The radiance that a rig's pixel must have, by the formulas of docs/background/physics.md, written
+// for the tests and from nothing but the rig: no geometry or light of the code under test.
 //
 //   L = sum over strobes, cones, lamps of  Phi P A_k cos(theta) / (N d^2)
 //         (rho cos(i) + phong max(0, r.l)^size) / pi  exp(-K (d + r))

@@ -47,7 +47,7 @@ class SmallSurvey {
         return file;
     }
 
-    // Into folder()/output, by the plan of docs/accuracy.md.
+    // Into folder()/output, by the plan of docs/background/accuracy.md.
     [[nodiscard]] CommandResult make(const Arguments& arguments,
                                      const std::string& output = "out") const {
         const std::string scene = (rig().parent_path() / "survey.pov").string();

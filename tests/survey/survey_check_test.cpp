@@ -409,7 +409,7 @@ std::vector<std::string> told_of_flown(std::uint32_t seed, const Flown& flown) {
     return told_of(looks);
 }
 
-// docs/surveys.md has what came of the night's.
+// docs/guides/correct.md has what came of the night's.
 std::uint32_t surveys_to_fly() {
     return static_cast<std::uint32_t>(campaign(6, 100));
 }

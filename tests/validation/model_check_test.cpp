@@ -93,7 +93,7 @@ TEST(ModelCheck, PartsCoastalWaterFromHarbours) {
 }
 
 // Were light lost at c, a coastal floor would be too dark by a factor of 2.4 at 4 m of path
-// (docs/water.md): the check must see it.
+// (docs/reference/water.md): the check must see it.
 TEST(ModelCheck, SeesWaterThatLosesAllThatItTurns) {
     Rig rig = led_rig(0.179, 0.219);
     const ModelCheck check = check_model(rig, kPaths, 2);

@@ -494,8 +494,8 @@ TEST(TracerSymmetry, TopIsForwardAndRightIsStarboard) {
 
 // --- The highlight -----------------------------------------------------------------------
 
-// docs/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera looking
-// ahead: the mirrored ray goes ahead, away from the lamp.
+// docs/background/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera
+// looking ahead: the mirrored ray goes ahead, away from the lamp.
 TEST(TracerHighlight, IsNothingOnTheSideAwayFromTheMirroredRay) {
     Rig rig = plain_rig(1, 3, 2.0);
     rig.strobes = {lamp_at({-6.0, 0.0, 1.0})};

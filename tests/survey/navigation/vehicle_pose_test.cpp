@@ -34,7 +34,7 @@ TEST(VehiclePose, WithoutAMountingItIsTheCamerasToTheBit) {
     EXPECT_EQ(same.roll_rad, sled.roll_rad);
 }
 
-// HabCam at 2 m and 5 degrees is 1.992 m above its floor (docs/physics.md).
+// HabCam at 2 m and 5 degrees is 1.992 m above its floor (docs/background/physics.md).
 TEST(VehiclePose, AHeightIsCarriedToTheAxisByBothTilts) {
     const Sled sled{1.99239, 5.0 * kDegree, 0.0};
     constexpr double kDigits = 1e-5;  // as many as the height has
