@@ -48,7 +48,6 @@ namespace aphotic {
 // luminance is that of IEC 61966-2-1: 0.2126 R + 0.7152 G + 0.0722 B.
 
 inline constexpr double kMiddleGrey = 0.2;
-inline constexpr const char* kSrgbFolder = "srgb";  // in the folder of results
 
 struct SrgbFormat {
     std::string format = "jpeg";  // or png, tiff

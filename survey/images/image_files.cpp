@@ -43,6 +43,13 @@ bool holds_results(const fs::path& folder, const fs::path& output) {
            fs::exists(folder / kBaselineNotes, none);
 }
 
+// Of a folder of results that is itself the survey, as for their average: what else is made of each
+// image.
+bool is_beside_results(const fs::path& path, bool is_folder) {
+    return is_folder ? path.filename() == kSrgbFolder
+                     : path.filename().string().ends_with(".mask.png");
+}
+
 // "24 .orf, 1 .csv": the most frequent first, of a few kinds.
 std::string kinds_in_words(const std::map<std::string, std::size_t>& kinds) {
     constexpr std::size_t kMostKinds = 4;
@@ -90,17 +97,19 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
             folder.string());
     }
     const auto first = std::ssize(files);
+    const bool are_results = holds_results(folder, output);
     std::map<std::string, std::size_t> others;  // by extension
     const auto options = fs::directory_options::follow_directory_symlink;
     for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
         const fs::path& file = it->path();
         const bool is_folder = it->is_directory(none);
-        if (!is_folder || holds_results(file, output) ||
+        const bool is_left_out = are_results && is_beside_results(file, is_folder);
+        if (!is_folder || is_left_out || holds_results(file, output) ||
             (it->is_symlink() && leads_back(file, it.depth()))) {
             it.disable_recursion_pending();
         }
         const bool is_hidden = file.filename().string().starts_with('.');
-        if (is_folder || is_hidden) continue;
+        if (is_folder || is_hidden || is_left_out) continue;
         if (!is_image_name(file)) {
             constexpr std::size_t kMostBytes = 12;
             const std::string extension = lower_case(file.extension().string());

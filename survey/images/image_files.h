@@ -23,12 +23,14 @@ inline constexpr std::string_view kCorrectionNotes = "correction.json";
 inline constexpr std::string_view kBaselineNotes = "baseline.json";
 inline constexpr std::string_view kReportPage = "report.html";
 inline constexpr std::string_view kJournal = "corrected.jsonl";  // of what is done
+inline constexpr const char* kSrgbFolder = "srgb";               // of images to look at
 
 // In the order of the arguments, a folder's images sorted by name, those in the folders within it
 // among them, also by links; but for a link to a folder that it lies in. What lies in `output` and
-// in folders of results is left out. What has an image's name and cannot be read, as a link that
-// leads nowhere, is among them, for require_file() to tell. An InputError when an argument is not
-// there or is `output` itself, a folder holds no image, or two images would have one name.
+// in folders of results is left out; of one that is named itself, its linear images count alone.
+// What has an image's name and cannot be read, as a link that leads nowhere, is among them, for
+// require_file() to tell. An InputError when an argument is not there or is `output` itself, a
+// folder holds no image, or two images would have one name.
 [[nodiscard]] std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
                                                  const std::filesystem::path& output);
 

@@ -65,6 +65,15 @@ TEST(ImageFiles, LinksOfFoldersAreFollowedAndEnd) {
               (std::vector<std::string>{"a", "across/linked/b", "c", "dive/linked/b"}));
 }
 
+// As for the average of a survey that was corrected.
+TEST(ImageFiles, OfResultsThatAreNamedTheLinearImagesCount) {
+    const TempFolder folder;
+    std::filesystem::create_directory(folder.path() / "srgb");
+    for (const char* name : {"a.tif", "a.mask.png", "srgb/a.jpg", "correction.json"})
+        write_file(folder.path() / name, "");
+    EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a"}));
+}
+
 TEST(ImageFiles, ResultsOfAnEarlierRunAreNoRawImages) {
     const TempFolder folder;
     for (const char* name : {"out", "corrected", "flat"})
