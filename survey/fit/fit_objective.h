@@ -153,7 +153,7 @@ class FitObjective {
                                     const FitState& state,
                                     const PathLight& light,
                                     const Sled& sled,
-                                    const std::vector<float>* signal) const;
+                                    const FitImage* image) const;
     [[nodiscard]] Eigen::VectorXd within_bounds(const Eigen::VectorXd& x, Eigen::VectorXd dx) const;
     void learn_texture(const std::vector<ImageTerms>& terms, TextureScales& texture) const;
 
