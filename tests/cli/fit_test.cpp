@@ -3,6 +3,7 @@
 // The fit as a user runs it: surveys simulated and maps made of a rig that is known, and a rig
 // fitted to them that began elsewhere.
 #include "base/degrees.h"
+#include "base/npy_file.h"
 #include "image/output_images.h"
 #include "rig/file/rig_reader.h"
 #include "support/command_test.h"
@@ -166,7 +167,8 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
 }
 
 // Without a navigation: depths along the axis are those of the true poses. Of one image the map is
-// missing, at another a strobe was out.
+// missing, of another it is empty from row 24 on, but for what the plane around fills; and at one a
+// strobe was out.
 TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
     FitRigNumbers numbers = of_few_pixels();
     numbers.fore_tilt_deg += 2.0;
@@ -177,10 +179,17 @@ TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
                   path("survey/raw/000007.tif"),
                   fs::copy_options::overwrite_existing);
     fs::remove(path("survey/depth/000003.exr"));
+    fs::remove(path("survey/depth/000005.exr"));
+    std::vector<float> third(std::size_t{96} * 72, 0.0F);
+    std::fill_n(third.begin(), std::size_t{96} * 24, 2.0F);
+    write_npy(path("survey/depth/000005.npy"), {72, 96}, third);
     const Arguments fit = "fit rig.toml --images survey/raw --depth-map survey/depth -o fitted" +
-                          kCamera + "--blocks 12 --allow-skipped 1";
-    const CommandResult run = done(aphotic(fit), "splines fitted to 18 images\n");
+                          kCamera + "--blocks 12 --allow-skipped 2";
+    const CommandResult run = done(aphotic(fit), "splines fitted to 17 images\n");
     EXPECT_TRUE(has(run.err, "000003.tif: found no depth map of it in survey/depth; allowed: "));
+    EXPECT_TRUE(has(run.err,
+                    "000005.tif: found 36 of 108 blocks of one plane that all strobes see; "
+                    "allowed: half or more; skipped"));
     EXPECT_TRUE(has(run.err, "000007.tif: strobe aft did not fire"));
     const Json aim = number("strobe.fore.aim_along_deg");
     const double error_deg = aim.at("error").get<double>();
