@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE --depth-map DIR  -o DIR: the rig that
-// explains a survey, with errors.
+// aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE --depth-map DIR  -o DIR: the rig
+// that explains a survey, with errors.
 #include "survey/fit/fit.h"
 #include "base/atomic_file.h"
 #include "base/degrees.h"

@@ -25,7 +25,7 @@ Rig rig_of_blocks() {
     return fit_rig(numbers).rig();
 }
 
-// z by x and y, without normals but straight up: the floor's parts are level.
+// z by column and row. Normals are straight up: the floor's parts are level.
 template <typename Depth>
 Relief level_parts(const ReliefMapMaker& rays, const Depth& depth_m) {
     Relief relief{.width_px = kWidth_px, .height_px = kHeight_px};
@@ -77,8 +77,8 @@ TEST_F(BlockPlanes, OfAPlaneAreThatPlane) {
     }
 }
 
-// Of slopes of up to 0.3, the mean over a block is off its middle by the curvature over a block of
-// 5 cm, a k^2 (b/2)^2/6 times two directions.
+// The mean over a block of width b lies off the floor at its middle by the bend within it, a k^2
+// b^2/24 each way, and the normal by about k times that.
 TEST_F(BlockPlanes, OfHillsTouchThem) {
     constexpr double kBlock_m = 0.08;
     const Hills hills{.depth_m = 2.0, .height_m = 0.05, .k_per_m = 6.0};
