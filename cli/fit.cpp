@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE  -o DIR: the rig that explains a
-// survey, with errors.
+// aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE --depth-map DIR  -o DIR: the rig
+// that explains a survey, with errors.
 #include "survey/fit/fit.h"
 #include "base/atomic_file.h"
 #include "base/degrees.h"
@@ -57,13 +57,19 @@ struct FitCommandOptions {
 };
 
 FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const RunWatch& watch) {
-    const PlaneSize size{rig.camera.width_px, rig.camera.height_px};
     if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
     Survey survey = read_survey(options.input, options.folder, &rig);
-    survey.navigation = read_navigation(options.input, survey.files, &rig);
-    survey.strobes = strobes_of_rig(rig, *survey.navigation, survey.files);
+    survey.navigation = navigation_of(options.input, survey.files, rig);
+    const bool has_relief = !options.input.depth.place.empty();
+    if (has_relief) {
+        survey.depth = options.input.depth;
+        survey.light =
+            light_of_rig(rig, survey.navigation, survey.files, true, kVeilOfCorrection, has_relief);
+    }
+    survey.strobes =
+        strobes_of_rig(rig, survey.navigation, survey.files, true, kVeilOfCorrection, has_relief);
     return samples_of_images(
-        survey, size, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
+        survey, rig, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
 }
 
 bool is_given(const CLI::App& app, const std::string& option) {
@@ -72,6 +78,7 @@ bool is_given(const CLI::App& app, const std::string& option) {
 
 // Options of images, which say nothing of maps; all that --nav needs are found out with it.
 constexpr std::array kOfImages{"--nav",
+                               "--depth-map",
                                "--bayer",
                                "--crop",
                                "--half",
@@ -102,8 +109,9 @@ void require_one_source(const CLI::App& app) {
         throw InputError("found {}; allowed: either --maps or --images",
                          has_maps ? "--maps and --images" : "neither --maps nor --images");
     }
-    if (has_images && !is_given(app, "--nav"))
-        throw InputError("--images: found no navigation; allowed: with --nav FILE");
+    if (has_images && !is_given(app, "--nav") && !is_given(app, "--depth-map"))
+        throw InputError(
+            "--images: found no navigation; allowed: with --nav FILE, or --depth-map DIR");
 }
 
 // As WORD=SPREAD, where the unit may follow: aim=2deg, altitude=0.1m.
@@ -180,6 +188,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     write_fitted_rig(text, result, options.folder);
     nlohmann::ordered_json json = to_json(result);
     json["dropouts"] = to_json(samples.marked);
+    if (!options.input.depth.place.empty()) json["depth"] = to_json(options.input.depth);
     write_text_file(options.folder / kFitNumbers, json_text(json));
     write_fit_page(options.folder / kFitPage, text, samples, result);
     if (options.input.json) {
@@ -200,6 +209,7 @@ Action configure_fit(CLI::App& app) {
     add_option(app, "--maps", options->maps);
     add_option(app, "--images", options->input.images);
     add_navigation_options(app, options->input);
+    add_depth_options(app, options->input);
     add_option(app, "--beam", options->fit.beam)->transform(word_of(kBeams));
     add_flag(app, "--beam-each", options->fit.has_beam_each);
     add_option(app, "--free", options->free)->delimiter(',');

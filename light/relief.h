@@ -2,6 +2,9 @@
 //
 // The sea floor as one image sees it, in place of a plane: the point that each pixel shows, and the
 // normal there, in the sled's frame (rig/geometry.h). Where nothing is known the point is NaN.
+//
+// The floor jumps between two pixels where the one lies off the plane through the other by more
+// than kReliefJump of its distance, or where one of them alone is known.
 #pragma once
 
 #include "rig/geometry.h"
@@ -13,6 +16,8 @@
 #include <vector>
 
 namespace aphotic {
+
+inline constexpr float kReliefJump = 0.02F;
 
 struct Relief {
     int width_px = 0;
@@ -28,6 +33,11 @@ struct Relief {
     // The plane through the point that touches the floor there.
     [[nodiscard]] Plane plane(std::size_t pixel) const {
         return {.point_m = point_m[pixel].cast<double>(), .normal = normal[pixel].cast<double>()};
+    }
+    [[nodiscard]] bool jumps(std::size_t pixel, std::size_t neighbour) const {
+        if (knows(pixel) != knows(neighbour)) return true;
+        const Eigen::Vector3f way = point_m[neighbour] - point_m[pixel];
+        return std::abs(normal[pixel].dot(way)) > kReliefJump * point_m[pixel].norm();
     }
 };
 

@@ -35,21 +35,13 @@ struct ReliefMapMaker::Tables {
 
 namespace {
 
-// Whether the neighbour's point lies off the plane through this one.
-bool jumps(const Relief& relief, std::size_t pixel, std::size_t neighbour) {
-    if (relief.knows(pixel) != relief.knows(neighbour)) return true;
-    const Eigen::Vector3f& from = relief.point_m[pixel];
-    const Eigen::Vector3f way = relief.point_m[neighbour] - from;
-    return std::abs(relief.normal[pixel].dot(way)) > kReliefJump * from.norm();
-}
-
 std::vector<std::uint8_t> edges_of(const Relief& relief,
                                    const std::vector<std::uint32_t>& seen,
                                    int within_px) {
     std::vector<std::uint8_t> edges(relief.point_m.size());
     if (within_px == 0) return edges;
     const auto compare = [&](std::size_t pixel, std::size_t neighbour) {
-        if (seen[pixel] == seen[neighbour] && !jumps(relief, pixel, neighbour)) return;
+        if (seen[pixel] == seen[neighbour] && !relief.jumps(pixel, neighbour)) return;
         edges[pixel] = 1;
         edges[neighbour] = 1;
     };

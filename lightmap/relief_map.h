@@ -18,11 +18,9 @@ namespace aphotic {
 struct ReliefMap {
     Lightmap map;
     // 1 for every pixel within so many pixels of an edge of a beam, a shadow's border, or a jump of
-    // the range by more than kReliefJump of itself.
+    // the range.
     std::vector<std::uint8_t> edges;
 };
-
-inline constexpr float kReliefJump = 0.02F;
 
 class ReliefMapMaker {
   public:

@@ -247,8 +247,7 @@ FitSamples image_samples(const Rig& rig,
     survey.navigation =
         read_navigation({.source = navigation.string(), .jobs = jobs}, survey.files, &rig);
     survey.strobes = strobes_of_rig(rig, *survey.navigation, survey.files);
-    return samples_of_images(
-        survey, {rig.camera.width_px, rig.camera.height_px}, blocks, jobs, RunWatch{});
+    return samples_of_images(survey, rig, blocks, jobs, RunWatch{});
 }
 
 Fitted fit_rig(const TextRig& rig,

@@ -63,14 +63,21 @@ ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px, 
                 .edges = survey.light.edges(*sled, within_px),
                 .filled = {}};
     }
-    const DepthMaps& maps = *survey.depth;
     const auto maker = out == 0 ? survey.light.relief : survey.strobes.relief_without(out);
-    FloorRelief relief =
-        floor_relief(depth_map_of(survey, file), maps.is, maps.normals, *maker, sled);
+    FloorRelief relief = relief_of(survey, file);
     ReliefMap made = maker->map(relief.relief, within_px);
     return {.map = std::move(made.map),
             .edges = std::move(made.edges),
             .filled = std::move(relief.filled)};
+}
+
+FloorRelief relief_of(const Survey& survey, const ImageFile& file) {
+    const DepthMaps& maps = *survey.depth;
+    return floor_relief(depth_map_of(survey, file),
+                        maps.is,
+                        maps.normals,
+                        *survey.light.relief,
+                        sled_of(survey, file));
 }
 
 std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file) {

@@ -26,6 +26,9 @@ struct ImageLight {
                                   int within_px,
                                   std::uint64_t out = 0);
 
+// The floor that it shows, of a survey with depth maps.
+[[nodiscard]] FloorRelief relief_of(const Survey& survey, const ImageFile& file);
+
 // In cells, by strobe: of a survey that knows its light strobe by strobe.
 [[nodiscard]] std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file);
 

@@ -17,7 +17,7 @@
 // and --declare the floor, in place of the sea's:
 //
 //    Survey_Floor      "sea", or "card": one grey card all over with nothing on it, which is what
-//                      the chart would look like everywhere
+//                      the chart would look like everywhere; or "hills" of grey gravel
 //
 // A quick look, from this folder:
 //
@@ -175,10 +175,31 @@ Aphotic_Rig ()
    }
 #end
 
+// --- Hills, caps of balls up to 0.25 m high -----------------------------------------------------------
+
+#macro Hill ()
+   #local Size = Between (0.4, 1.0);
+   #local Rise = Between (0.05, 0.25);
+   sphere { <Between (-1.9, 1.9), Rise - Size, Between (-1.7, 1.7)>, Size }
+#end
+#macro Hills ()
+   union {
+      plane { y, 0 }
+      #for (K, 1, 30) Hill () #end
+      pigment {
+         granite scale 0.3 color_map { [0 rgb 0.08] [1 rgb 0.28] }
+         translate <Between (-50, 50), Between (-50, 50), Between (-50, 50)>
+      }
+      finish { Matt }
+   }
+#end
+
 // --- The image --------------------------------------------------------------------------------------
 
 #if (strcmp(Survey_Floor, "card") = 0)
    plane { y, 0  pigment { rgb Card }  finish { Matt }  transform { Floor_Trans } }
+#elseif (strcmp(Survey_Floor, "hills") = 0)
+   object { Hills () transform { Floor_Trans } }
 #else
    union {
       Ground ()

@@ -250,10 +250,8 @@ FitResult fit(const RigText& text,
               const RunWatch& watch) {
     const Rig rig = text.rig();
     require_bare_floor(rig);
-    std::vector<Sled> sleds;
-    for (const FitImage& image : samples.images) sleds.push_back(image.sled);
     const FitLight light(rig, samples.places);
-    const double widest_rad = light.widest_rad(sleds);
+    const double widest_rad = light.widest_rad(samples.images);
     const FitProblem problem = fit_problem(text, options, widest_rad, light.block_rad());
     const FitObjective objective(text, samples, options, light, problem);
     FitResult result;

@@ -65,7 +65,7 @@ struct Confounded {
 
 struct ImageOutcome {
     std::string name;
-    Sled sled;                // as the navigation has it
+    Sled sled;                // as the navigation or the depth map has it
     Eigen::Vector3d off;      // as the light tells it, less that
     double brightness = 0.0;  // of its floor, over the mean of all, as a logarithm
 };

@@ -32,8 +32,8 @@ std::optional<Suspicion> mistaken_input(const FitSamples& samples,
     const PathLight path_light = objective.path_light(problem.start);
     std::vector<ImageLook> looks;
     for (const FitImage& image : samples.images) {
-        looks.push_back(
-            look_at(image, light.at(problem.start, path_light, image.sled, {}).logarithm));
+        looks.push_back(look_at(
+            image, light.at(problem.start, path_light, image.sled, {}, image.planes).logarithm));
     }
     if (auto turned = turned_brightness(looks)) return turned;
     return red_for_blue(looks, samples.mosaic);

@@ -44,9 +44,11 @@ struct FloorJet {
     Vector3<Jet> point_m;
     Vector3<Jet> normal;
 };
+FloorJet fixed(const Plane& floor) {
+    return {.point_m = floor.point_m.cast<Jet>(), .normal = floor.normal.cast<Jet>()};
+}
 FloorJet floor_of(const Sled& sled) {
-    const Plane floor = floor_plane(sled);
-    FloorJet jet{.point_m = floor.point_m.cast<Jet>(), .normal = floor.normal.cast<Jet>()};
+    FloorJet jet = fixed(floor_plane(sled));
     for (int k = 0; k < FitLight::kPose; ++k) {
         const auto moved = [&](double step) {
             Sled other = sled;
@@ -68,14 +70,16 @@ Matrix3d into_frame(const Rig& rig, const std::array<double, 2>& aim_rad, std::s
     return rows;
 }
 
+Jet height_above(const FloorJet& floor, const Vector3d& point_m) {
+    return floor.normal.dot(point_m.cast<Jet>() - floor.point_m);
+}
+
 struct LampJet {
     Vector3d position_m;
-    Jet height_m;
     Eigen::Matrix<Jet, 3, 3> into_frame;
 };
-LampJet lamp_of(const Rig& rig, const FitState& state, const FloorJet& floor, std::size_t strobe) {
-    LampJet lamp{.position_m = rig.strobes[strobe].position_m, .height_m = {}, .into_frame = {}};
-    lamp.height_m = floor.normal.dot(lamp.position_m.cast<Jet>() - floor.point_m);
+LampJet lamp_of(const Rig& rig, const FitState& state, std::size_t strobe) {
+    LampJet lamp{.position_m = rig.strobes[strobe].position_m, .into_frame = {}};
     std::array<double, 2> aim_rad = state.aim_rad[strobe];
     lamp.into_frame = into_frame(rig, aim_rad, strobe).cast<Jet>();
     for (std::size_t k = 0; k < 2; ++k) {
@@ -96,7 +100,7 @@ BasicFloorRay<Jet> ray_to(const FloorJet& floor, const WaterRay& ray) {
     return {.origin_m = ray.origin_m,
             .direction = ray.direction,
             .down = -floor.normal.dot(ray.direction.cast<Jet>()),
-            .height_m = floor.normal.dot(ray.origin_m.cast<Jet>() - floor.point_m)};
+            .height_m = height_above(floor, ray.origin_m)};
 }
 
 // A 24th of second differences, each way; along the border they go on as a straight line.
@@ -194,19 +198,21 @@ class Scene {
           const FitState& state,
           const PathLight& light,
           const Sled& sled,
-          const std::vector<FitPlaceInState>& numbers)
+          const std::vector<FitPlaceInState>& numbers,
+          const std::vector<Plane>& planes)
         : state_(state),
           light_(light),
           floor_(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
                            .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
                            .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          planes_(planes),
           pose_(std::ssize(numbers)) {
         const auto column_of = [&](const FitPlaceInState& at) -> Index {
             const auto found = std::ranges::find(numbers, at);
             return found == numbers.end() ? kHeld : found - numbers.begin();
         };
         for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-            lamps_.push_back(lamp_of(rig, state, floor_, s));
+            lamps_.push_back(lamp_of(rig, state, s));
             aims_.push_back({column_of({FitPart::Aim, s, 0}), column_of({FitPart::Aim, s, 1})});
             powers_.push_back(column_of({FitPart::Power, s}));
             beams_.push_back(column_of({FitPart::Beam, state.beam_of[s]}));
@@ -219,7 +225,10 @@ class Scene {
 
     [[nodiscard]] const FitState& state() const { return state_; }
     [[nodiscard]] const PathLight& light() const { return light_; }
-    [[nodiscard]] const FloorJet& floor() const { return floor_; }
+    [[nodiscard]] FloorJet floor(std::size_t place) const {
+        return has_planes() ? fixed(planes_[place]) : floor_;
+    }
+    [[nodiscard]] bool has_planes() const { return !planes_.empty(); }
     [[nodiscard]] const std::vector<LampJet>& lamps() const { return lamps_; }
     [[nodiscard]] Index pose() const { return pose_; }
     [[nodiscard]] Index of_floor() const { return pose_ + kPose; }
@@ -274,6 +283,7 @@ class Scene {
     const FitState& state_;
     const PathLight& light_;
     FloorJet floor_;
+    const std::vector<Plane>& planes_;
     Index pose_;
     std::vector<LampJet> lamps_;
     std::vector<std::array<Index, 2>> aims_;
@@ -283,22 +293,25 @@ class Scene {
 };
 
 void light_floor(const Scene& scene,
-                 const std::vector<FitLight::Sight>& sights,
+                 const std::vector<FitLight::Rays>& places,
                  BlockLight::Rows& rows) {
     const FitState& state = scene.state();
     Scene::Lit lit{.is_floor = true, .w = {}};
     Scene::OfBeam beam;
     std::vector<double> by_version(scene.light().versions() - 1);
-    for (std::size_t place = 0; place < sights.size(); ++place) {
-        const FitLight::Rays& rays = sights[place].rays;
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        const FitLight::Rays& rays = places[place];
+        const FloorJet floor = scene.floor(place);
         for (std::size_t r = 0; r < rays.size(); ++r) {
-            const BasicFloorRay<Jet> ray = ray_to(scene.floor(), rays[r]);
+            const BasicFloorRay<Jet> ray = ray_to(floor, rays[r]);
             if (!ray.sees_floor()) continue;
             for (lit.strobe = 0; lit.strobe < scene.lamps().size(); ++lit.strobe) {
                 const LampJet& lamp = scene.lamps()[lit.strobe];
+                const Jet lamp_height_m = height_above(floor, lamp.position_m);
+                if (!(lamp_height_m > 0.0)) continue;
                 const Vector3<Jet> V = towards(lamp.position_m, ray);
                 const Jet length = sqrt(V.squaredNorm());
-                const Arriving<Jet> way = arriving(lamp.height_m, ray.height_m, ray.down, length);
+                const Arriving<Jet> way = arriving(lamp_height_m, ray.height_m, ray.down, length);
                 lit.w = lamp.into_frame * V / length;
                 scene.look(lit, beam);
                 const Jet spread =
@@ -382,7 +395,8 @@ void light_water(const Scene& scene,
     for (std::size_t node = 0; node < nodes.size(); ++node) {
         for (std::size_t r = 0; r < nodes[node].size(); ++r) {
             const WaterRay& ray = nodes[node][r];
-            const BasicFloorRay<Jet> sight = ray_to(scene.floor(), ray);
+            const BasicFloorRay<Jet> sight = ray_to(scene.floor(node), ray);
+            if (scene.has_planes() && !sight.sees_floor()) continue;
             // Towards the horizon about as far as the longest path that is tabulated.
             const double last_m = sight.sees_floor()
                                       ? std::min(sight.height_m.a / sight.down.a, light.longest_m())
@@ -440,8 +454,8 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places)
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double column = places.columns[i];
         const double row = places.rows[i];
-        sights_.push_back({.rays = rays_at(column, row),
-                           .from_middle2 = radial_square(camera, column, row),
+        rays_.push_back(rays_at(column, row));
+        sights_.push_back({.from_middle2 = radial_square(camera, column, row),
                            .cosine = direction_in_air(camera, column, row).z(),
                            .vignetting = vignetting_at(camera, column, row)});
     }
@@ -480,13 +494,16 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places)
 BlockLight FitLight::at(const FitState& state,
                         const PathLight& light,
                         const Sled& sled,
-                        const std::vector<FitPlaceInState>& numbers) const {
-    const Scene scene(rig_, state, light, sled, numbers);
+                        const std::vector<FitPlaceInState>& numbers,
+                        const std::vector<Plane>& planes) const {
+    const Scene scene(rig_, state, light, sled, numbers, planes);
     const auto rows = static_cast<Index>(kChannels * places_.size());
     using Rows = BlockLight::Rows;
     Rows middles = Rows::Zero(rows, scene.of_all() + 1);
-    light_floor(scene, sights_, middles);
-    if (light.scatterers() > 0) {
+    light_floor(scene, rays_, middles);
+    if (light.scatterers() > 0 && scene.has_planes()) {
+        light_water(scene, rays_, middles);
+    } else if (light.scatterers() > 0) {
         Rows of_nodes = Rows::Zero(kChannels * std::ssize(veil_nodes_), middles.cols());
         light_water(scene, veil_nodes_, of_nodes);
         Rows of_rows = Rows::Zero(kChannels * along_rows_.rows(), middles.cols());
@@ -501,8 +518,11 @@ BlockLight FitLight::at(const FitState& state,
             middles.col(column) = middles.col(scene.of_floor()) / state.floor_brightness;
     }
     apply_vignetting(state, numbers, sights_, middles);
-    Rows means = Rows::Zero(rows, middles.cols());
-    apply(means_, middles, means);
+    Rows means = middles;
+    if (!scene.has_planes()) {
+        means.setZero();
+        apply(means_, middles, means);
+    }
     BlockLight found;
     const Eigen::VectorXd all = means.col(scene.of_all());
     found.logarithm =
@@ -515,28 +535,31 @@ BlockLight FitLight::at(const FitState& state,
 }
 
 template <typename Use>
-void FitLight::for_each_way(const Use& use) const {
-    for (const Sight& sight : sights_)
-        for (const WaterRay& ray : sight.rays)
-            for (const Strobe& strobe : rig_.strobes) use(ray, strobe);
+void FitLight::for_each_way(const std::vector<FitImage>& images, const Use& use) const {
+    for (const FitImage& image : images) {
+        for (std::size_t place = 0; place < places_.size(); ++place) {
+            const Plane floor =
+                image.planes.empty() ? floor_plane(image.sled) : image.planes[place];
+            for (const WaterRay& ray : rays_[place]) {
+                const auto length_m = distance_to(floor, ray);
+                if (!length_m) continue;
+                const Vector3d seen_m = ray.origin_m + *length_m * ray.direction;
+                for (const Strobe& strobe : rig_.strobes) use(ray, strobe, seen_m);
+            }
+        }
+    }
 }
 
-PathRange FitLight::paths(const std::vector<Sled>& sleds) const {
+PathRange FitLight::paths(const std::vector<FitImage>& images) const {
     constexpr double kRoom = 1.2;  // for offsets of the altitude
     PathRange range{.shortest_m = std::numeric_limits<double>::infinity(), .longest_m = 0.0};
-    for (const Sled& sled : sleds) {
-        const Plane floor = floor_plane(sled);
-        for_each_way([&](const WaterRay& ray, const Strobe& strobe) {
-            const auto length_m = distance_to(floor, ray);
-            if (!length_m) return;
-            const Vector3d seen_m = ray.origin_m + *length_m * ray.direction;
-            const double path_m = *length_m + (seen_m - strobe.position_m).norm();
-            range.longest_m = std::max(range.longest_m, kRoom * path_m);
-            range.shortest_m = std::min(
-                range.shortest_m,
-                rig_.water.scatters() ? (strobe.position_m - ray.origin_m).norm() : path_m / kRoom);
-        });
-    }
+    for_each_way(images, [&](const WaterRay& ray, const Strobe& strobe, const Vector3d& seen_m) {
+        const double path_m = (seen_m - ray.origin_m).norm() + (seen_m - strobe.position_m).norm();
+        range.longest_m = std::max(range.longest_m, kRoom * path_m);
+        range.shortest_m = std::min(
+            range.shortest_m,
+            rig_.water.scatters() ? (strobe.position_m - ray.origin_m).norm() : path_m / kRoom);
+    });
     range.shortest_m = std::min(range.shortest_m, range.longest_m);
     return range;
 }
@@ -550,18 +573,13 @@ double FitLight::block_rad() const {
     return 2.0 * angle_between(one, other);
 }
 
-double FitLight::widest_rad(const std::vector<Sled>& sleds) const {
+double FitLight::widest_rad(const std::vector<FitImage>& images) const {
     double widest_rad = 0.0;
-    for (const Sled& sled : sleds) {
-        const Plane floor = floor_plane(sled);
-        for_each_way([&](const WaterRay& ray, const Strobe& strobe) {
-            const auto length_m = distance_to(floor, ray);
-            if (!length_m) return;
-            const Vector3d seen_m = ray.origin_m + *length_m * ray.direction;
+    for_each_way(
+        images, [&](const WaterRay& /*ray*/, const Strobe& strobe, const Vector3d& seen_m) {
             widest_rad =
                 std::max(widest_rad, angle_between(strobe.axis, seen_m - strobe.position_m));
         });
-    }
     return std::min(widest_rad, 0.5 * pi);
 }
 

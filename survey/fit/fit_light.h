@@ -23,11 +23,16 @@
 // The mean over a block is its middle's, and a 24th of the second differences of middles each way:
 // exact for cubics.
 //
+// Or blocks have planes of their own (block_planes.h). These do not move with the pose, the veil is
+// integrated before each of them, and the mean over a block is its middle's alone, for differences
+// between neighbours are those of their planes.
+//
 // Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
 // strobe (rig/beam/beam.h). Offsets are added to the altitude, pitch and roll that the navigation
 // tells.
 #pragma once
 
+#include "rig/geometry.h"
 #include "rig/rig.h"
 #include "survey/fit/fit_beam.h"
 #include "survey/fit/path_light.h"
@@ -55,6 +60,15 @@ struct FitPlaces {
     [[nodiscard]] std::size_t size() const { return columns.size(); }
     [[nodiscard]] std::size_t across() const;
     [[nodiscard]] std::size_t down() const { return size() / across(); }
+};
+
+// An image or a map as blocks.
+struct FitImage {
+    std::string name;
+    Sled sled;
+    std::vector<float> signal{};   // by place, then channel
+    std::vector<Plane> planes{};   // by place; empty: the floor is the sled's plane
+    double saturated_share = 0.0;  // of its samples
 };
 
 // What a fit looks for.
@@ -102,15 +116,17 @@ class FitLight {
 
     FitLight(const Rig& rig, const FitPlaces& places);
 
+    // planes: an image's.
     [[nodiscard]] BlockLight at(const FitState& state,
                                 const PathLight& light,
                                 const Sled& sled,
-                                const std::vector<FitPlaceInState>& numbers) const;
+                                const std::vector<FitPlaceInState>& numbers,
+                                const std::vector<Plane>& planes = {}) const;
 
-    // The paths that these sleds can show, with room for offsets of the altitude.
-    [[nodiscard]] PathRange paths(const std::vector<Sled>& sleds) const;
+    // The paths that these images can show, with room for offsets of the altitude.
+    [[nodiscard]] PathRange paths(const std::vector<FitImage>& images) const;
     // The widest angle off any strobe's axis of the floor that the places see, up to a right angle.
-    [[nodiscard]] double widest_rad(const std::vector<Sled>& sleds) const;
+    [[nodiscard]] double widest_rad(const std::vector<FitImage>& images) const;
     // What a block at the image's middle spans.
     [[nodiscard]] double block_rad() const;
 
@@ -119,18 +135,19 @@ class FitLight {
     using Rays = std::vector<WaterRay>;  // one, or by channel
     // What the camera sees of a place.
     struct Sight {
-        Rays rays;
         double from_middle2 = 0.0;  // p^2 of vignetting
         double cosine = 1.0;        // off the optical axis, in air
         double vignetting = 1.0;    // the rig's own
     };
 
   private:
+    // use(ray, strobe, what it shows)
     template <typename Use>
-    void for_each_way(const Use& use) const;
+    void for_each_way(const std::vector<FitImage>& images, const Use& use) const;
 
     Rig rig_;
     FitPlaces places_;
+    std::vector<Rays> rays_;  // by place
     std::vector<Sight> sights_;
     std::vector<Rays> veil_nodes_;
     Eigen::SparseMatrix<double, Eigen::RowMajor> along_rows_;  // of the nodes, to columns of places

@@ -164,9 +164,7 @@ FitObjective::FitObjective(const RigText& rig,
       pose_weight_(1.0 / (options.altitude_error_m * options.altitude_error_m),
                    1.0 / (options.attitude_error_rad * options.attitude_error_rad),
                    1.0 / (options.attitude_error_rad * options.attitude_error_rad)) {
-    std::vector<Sled> sleds;
-    for (const FitImage& image : samples.images) sleds.push_back(image.sled);
-    paths_ = light.paths(sleds);
+    paths_ = light.paths(samples.images);
     const std::size_t across = samples.places.across();
     const std::size_t down = samples.places.down();
     while ((std::min(across, down) >> (levels_ + 1)) > 0) ++levels_;
@@ -185,16 +183,20 @@ ImageView FitObjective::view(const FitPoint& point,
     sled.altitude_m += off.x();
     sled.pitch_rad += off.y();
     sled.roll_rad += off.z();
-    return view_of(point, state, light, sled, &samples_.images[image].signal);
+    return view_of(point, state, light, sled, &samples_.images[image]);
 }
 
-// Without a signal the residual is 0.
+// Without an image the residual is 0, on the sled's plane.
 ImageView FitObjective::view_of(const FitPoint& point,
                                 const FitState& state,
                                 const PathLight& light,
                                 const Sled& sled,
-                                const std::vector<float>* signal) const {
-    ImageView view{.light = light_.at(state, light, sled, problem_.places())};
+                                const FitImage* image) const {
+    ImageView view{.light = light_.at(state,
+                                      light,
+                                      sled,
+                                      problem_.places(),
+                                      image == nullptr ? std::vector<Plane>() : image->planes)};
     const auto q = static_cast<Index>(channels_);
     const auto numbers = std::ssize(problem_.numbers);
     const auto places = static_cast<Index>(samples_.places.size());
@@ -214,9 +216,10 @@ ImageView FitObjective::view_of(const FitPoint& point,
         for (Index c = 0; c < q; ++c) {
             const Index row = place * kChannels + c;
             const double model = view.light.logarithm(row);
-            const double seen = signal == nullptr ? 0.0 : (*signal)[static_cast<std::size_t>(row)];
-            off(c) = signal == nullptr ? 0.0 : std::log(seen) - model - point.x(numbers + c);
-            if (!(model > darkest) || (signal != nullptr && !(seen > 0.0)))
+            const double seen =
+                image == nullptr ? 0.0 : image->signal[static_cast<std::size_t>(row)];
+            off(c) = image == nullptr ? 0.0 : std::log(seen) - model - point.x(numbers + c);
+            if (!(model > darkest) || (image != nullptr && !(seen > 0.0)))
                 off(c) = std::numeric_limits<double>::quiet_NaN();
         }
         if (!off.allFinite()) continue;

@@ -25,7 +25,7 @@
 // images without texture would have none.
 //
 // An image's errors of altitude, pitch and roll are numbers of its own, eliminated from its normal
-// equations, and moved with each step.
+// equations, and moved with each step. On planes of its own blocks they do nothing, and stay 0.
 //
 // Details of one image hang together: a stone is seen by several, a shadow by many. What they tell
 // is therefore less than S says, by the dispersion phi of the images' gradients over their
@@ -153,7 +153,7 @@ class FitObjective {
                                     const FitState& state,
                                     const PathLight& light,
                                     const Sled& sled,
-                                    const std::vector<float>* signal) const;
+                                    const FitImage* image) const;
     [[nodiscard]] Eigen::VectorXd within_bounds(const Eigen::VectorXd& x, Eigen::VectorXd dx) const;
     void learn_texture(const std::vector<ImageTerms>& terms, TextureScales& texture) const;
 

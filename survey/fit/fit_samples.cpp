@@ -5,9 +5,12 @@
 #include "base/error.h"
 #include "base/in_order.h"
 #include "base/number.h"
+#include "base/upper_median.h"
 #include "image/exr.h"
 #include "survey/dropout_check.h"
 #include "survey/first_look.h"
+#include "survey/fit/block_planes.h"
+#include "survey/image_light.h"
 #include "survey/images/survey_image.h"
 
 #include <algorithm>
@@ -90,6 +93,26 @@ void average(const RawImage& raw, float white, int block_px, FitImage& image) {
     });
     for (const Mean& mean : means) image.signal.push_back(mean.signal());
     image.saturated_share = saturated / static_cast<double>(raw.samples.size());
+}
+
+// Its floor, and what stands for the pose where that is not known.
+void put_floor(const Survey& survey,
+               const ImageFile& file,
+               const FitPlaces& places,
+               const Rig& rig,
+               FitImage& image) {
+    const std::optional<Sled> sled = sled_of(survey, file);
+    if (survey.depth) image.planes = block_planes(relief_of(survey, file).relief, places, rig);
+    std::vector<double> depths_m;
+    for (const Plane& plane : image.planes)
+        if (std::isfinite(plane.point_m.z())) depths_m.push_back(plane.point_m.z());
+    if (2 * depths_m.size() < image.planes.size()) {
+        throw InputError(
+            "found {} of {} blocks of one plane that all strobes see; allowed: half or more",
+            depths_m.size(),
+            image.planes.size());
+    }
+    image.sled = sled ? *sled : Sled{.altitude_m = upper_median(depths_m)};
 }
 
 double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {
@@ -200,11 +223,12 @@ FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
 }
 
 FitSamples samples_of_images(const Survey& survey,
-                             PlaneSize size,
+                             const Rig& rig,
                              int blocks_across,
                              std::size_t jobs,
                              const RunWatch& watch) {
     FitSamples samples;
+    const PlaneSize size{rig.camera.width_px, rig.camera.height_px};
     samples.places = fit_places(size.width_px, size.height_px, blocks_across);
     samples.mosaic = survey.camera.mosaic.value_or(Mosaic::None);
     CameraNumbers numbers = survey.camera;
@@ -222,8 +246,8 @@ FitSamples samples_of_images(const Survey& survey,
         survey.files.size(),
         static_cast<int>(jobs),
         [&](std::size_t i) {
-            FitImage image{.name = survey.files[i].name.string(),
-                           .sled = survey.sled_of(survey.files[i])};
+            FitImage image{.name = survey.files[i].name.string(), .sled = {}};
+            put_floor(survey, survey.files[i], samples.places, rig, image);
             SurveyImage taken = read_survey_image(survey.files[i].source, numbers);
             LightCells lit = light_cells(taken, survey, survey.files[i]);
             take_off_black(taken);

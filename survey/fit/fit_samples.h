@@ -4,7 +4,10 @@
 // channel the mean of the block's samples less the black level, at the reference exposure.
 //
 // A block is left out (NaN) in a channel where more than kMostSaturated of its samples are
-// saturated, for their mean would be too dark, or more than half were not observed.
+// saturated, for their mean would be too dark, or more than half were not observed; and of a survey
+// with depth maps where block_planes.h finds no plane. An image that has a plane at less than half
+// of its blocks is skipped. Where such a survey has no pose of it, its altitude is the middle one
+// of its blocks' depths along the axis, level.
 #pragma once
 
 #include "survey/fit/fit_light.h"
@@ -21,13 +24,6 @@ namespace aphotic {
 inline constexpr int kBlocksAcross = 40;
 inline constexpr double kMostSaturated = 0.01;
 
-struct FitImage {
-    std::string name;
-    Sled sled;
-    std::vector<float> signal{};   // by place, then channel
-    double saturated_share = 0.0;  // of its samples
-};
-
 struct FitSamples {
     FitPlaces places{};
     std::vector<FitImage> images{};
@@ -41,11 +37,11 @@ struct FitSamples {
 // Blocks of a width that gives about so many across.
 [[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across);
 
-// The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone.
-// Which strobes lit them is judged by the survey's (dropouts.h): others are left out.
+// The survey has a navigation or depth maps. Images are read `jobs` at a time and kept as their
+// blocks alone. Which strobes lit them is judged by the survey's (dropouts.h): others are left out.
 // What survey_check.h doubts is told to the watch before. An InputError when none can be used.
 [[nodiscard]] FitSamples samples_of_images(const Survey& survey,
-                                           PlaneSize size,
+                                           const Rig& rig,
                                            int blocks_across,
                                            std::size_t jobs,
                                            const RunWatch& watch);

@@ -3,6 +3,7 @@
 // The fit as a user runs it: surveys simulated and maps made of a rig that is known, and a rig
 // fitted to them that began elsewhere.
 #include "base/degrees.h"
+#include "base/npy_file.h"
 #include "image/output_images.h"
 #include "rig/file/rig_reader.h"
 #include "support/command_test.h"
@@ -163,6 +164,44 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
         EXPECT_TRUE(page.find(words) != std::string::npos) << words;
     }
     EXPECT_EQ(page.find(">Confounded<") != std::string::npos, !json.at("confounded").empty());
+}
+
+// Without a navigation: depths along the axis are those of the true poses. Of one image the map is
+// missing, of another it is empty from row 24 on, but for what the plane around fills; and at one a
+// strobe was out.
+TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.fore_tilt_deg += 2.0;
+    write_rigs(of_few_pixels(), numbers);
+    fly("--images 20 --texture 0.005 --truth depth");
+    done("survey truth.toml --set strobe.aft.power=0.01 --images 20 --texture 0.005 -o unlit");
+    fs::copy_file(path("unlit/raw/000007.tif"),
+                  path("survey/raw/000007.tif"),
+                  fs::copy_options::overwrite_existing);
+    fs::remove(path("survey/depth/000003.exr"));
+    fs::remove(path("survey/depth/000005.exr"));
+    std::vector<float> third(std::size_t{96} * 72, 0.0F);
+    std::fill_n(third.begin(), std::size_t{96} * 24, 2.0F);
+    write_npy(path("survey/depth/000005.npy"), {72, 96}, third);
+    const Arguments fit = "fit rig.toml --images survey/raw --depth-map survey/depth -o fitted" +
+                          kCamera + "--blocks 12 --allow-skipped 2";
+    const CommandResult run = done(aphotic(fit), "splines fitted to 17 images\n");
+    EXPECT_TRUE(has(run.err, "000003.tif: found no depth map of it in survey/depth; allowed: "));
+    EXPECT_TRUE(has(run.err,
+                    "000005.tif: found 36 of 108 blocks of one plane that all strobes see; "
+                    "allowed: half or more; skipped"));
+    EXPECT_TRUE(has(run.err, "000007.tif: strobe aft did not fire"));
+    const Json aim = number("strobe.fore.aim_along_deg");
+    const double error_deg = aim.at("error").get<double>();
+    EXPECT_NEAR(
+        aim.at("value").get<double>(), 2.0 * std::cos(std::atan2(0.1, 0.5)), kSigmas * error_deg);
+    EXPECT_LT(error_deg, 0.5);
+    const Json json = json_in("fitted/fit.json");
+    EXPECT_EQ(json.at("depth").at("is"), "axis");
+    for (const Json& image : json.at("images")) {
+        EXPECT_EQ(image.at("altitude_off_m").get<double>(), 0.0);
+        EXPECT_GT(image.at("altitude_m").get<double>(), 1.2);  // 1.3 to 3.2 were flown
+    }
 }
 
 // A lamp of a millionth of the light has no aim that anybody sees.
@@ -328,6 +367,11 @@ TEST_F(CommandFit, SaysWhatItNeeds) {
              {"fit ball.toml --maps a.exr -o fitted", "ball.toml: found 1 object; allowed: none"},
              {maps + "--set seafloor.phong=0.1", "seafloor.phong: found 0.1; allowed: 0, a matt"},
              {maps + "--nav a.txt", "--nav: found with --maps; allowed: with --images"},
+             {maps + "--depth-map .", "--depth-map: found with --maps; allowed: with --images"},
+             {"fit rig.toml --images . -o fitted --depth-unit mm", "--depth-unit"},
+             {"fit rig.toml --images a.exr --depth-map . --normals floor -o fitted",
+              "--normals floor needs --nav, which says how the floor lies"},
+             {"fit rig.toml --images a.exr --depth-map nowhere -o fitted", "--depth-map: "},
              {maps + "--bayer RGGB", "--bayer: found with --maps; allowed: with --images"},
              {maps + "--beam cosine --free aim", "--beam" + no_beam},
              {maps + "--beam-each --hold beam", "--beam" + no_beam},

@@ -4,6 +4,7 @@
 // where there is too little; what they take of memory, as the kernel counts it.
 #include "scene_gen/resource_needs.h"
 
+#include "base/number.h"
 #include "image/exr.h"
 #include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
@@ -250,6 +251,29 @@ TEST_F(MemoryOfRender, IsAsPlanned) {
     EXPECT_EQ(found.status, 0);
     EXPECT_LE(found.peak_bytes, said_bytes);
     EXPECT_GE(found.peak_bytes, said_bytes / 2);
+}
+
+// Told before a POV-Ray, here one that gives up at once, is begun. Words have three digits.
+TEST_F(Memory, LowersTheJobsToWhatItAllows) {
+    constexpr double kDigits = 0.01;
+    put_rig(16384, 16384);
+    write_file(path("rig.toml"), with(text_of("rig.toml"), {{"pixel_pitch_um", "0.5"}}));
+    write_script(path("povray"), "[ \"$1\" = --version ] && exec povray --version\nexit 1\n");
+    const CommandResult run = aphotic(
+        Arguments("render rig.toml -o out --bands 1 --jobs 1024 --ignore-needs --povray ./povray"));
+    EXPECT_EQ(run.status, kRunFailed);
+    std::smatch found;
+    ASSERT_TRUE(
+        std::regex_search(run.err,
+                          found,
+                          std::regex("renders (\\d+) frames? at a time, for POV-Ray takes up to "
+                                     "(.*) GB of memory for each, and (.*) GB are free")))
+        << run.err;
+    const double jobs = read_number<double>(found[1].str()).value();
+    const double each_gb = read_number<double>(found[2].str()).value();
+    const double free_gb = read_number<double>(found[3].str()).value();
+    EXPECT_TRUE(jobs == 1.0 || jobs * each_gb <= free_gb * (1.0 + kDigits)) << run.err;
+    EXPECT_GE((jobs + 1.0) * each_gb, free_gb * (1.0 - kDigits));
 }
 
 // The limit of a shell or a scheduler.

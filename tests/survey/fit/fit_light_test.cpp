@@ -5,6 +5,8 @@
 
 #include "base/degrees.h"
 #include "support/fit_rig.h"
+#include "support/hills.h"
+#include "survey/fit/block_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -65,7 +67,8 @@ double worst_against_lightmap(const FitRigNumbers& numbers, int pixels_of_block 
     known.places =
         fit_places(numbers.width_px, numbers.height_px, numbers.width_px / pixels_of_block);
     const FitLight light(known.rig, known.places);
-    const PathLight path(known.text, known.state.water, {}, light.paths({kTilted}));
+    const PathLight path(
+        known.text, known.state.water, {}, light.paths({{.name = {}, .sled = kTilted}}));
     const BlockLight found = light.at(known.state, path, kTilted, {});
     const LightmapMaker maker(known.rig, paths_of(known.rig, {kTilted}), {});
     const std::vector<double> wanted = means_of(signal_of(maker.map(kTilted)), known.places);
@@ -99,6 +102,60 @@ TEST(FitLight, HasTheVeilOfTheSameRig) {
     EXPECT_LT(worst_against_lightmap(numbers), kVeilRule);
 }
 
+// Of hills, a plane for each pixel: the map on their relief, but where a lamp is behind one.
+double worst_against_relief_map(const FitRigNumbers& numbers) {
+    Known known(numbers, FitBeamKind::Held);
+    const FitLight light(known.rig, known.places);
+    const ReliefMapMaker maker(known.rig, {});
+    const Relief relief = relief_of(Hills{}, maker, numbers.width_px, numbers.height_px);
+    const FitImage image{
+        .name = {}, .sled = {}, .planes = block_planes(relief, known.places, known.rig)};
+    const PathLight path(known.text, known.state.water, {}, light.paths({image}));
+    const BlockLight found = light.at(known.state, path, image.sled, {}, image.planes);
+    const std::vector<double> wanted = means_of(signal_of(maker.map(relief, 0).map), known.places);
+    double worst = 0.0;
+    for (std::size_t row = 0; row < wanted.size(); ++row) {
+        if (!std::isfinite(image.planes[row / kChannels].normal.z())) continue;
+        const double signal = std::exp(found.logarithm(static_cast<Eigen::Index>(row)));
+        worst = std::max(worst, std::abs(signal / wanted[row] - 1.0));
+    }
+    return worst;
+}
+
+TEST(FitLight, OnPlanesOfAReliefIsItsMap) {
+    EXPECT_LT(worst_against_relief_map({}), kBands);
+    FitRigNumbers numbers;
+    numbers.water = "chlorophyll_mg_m3 = {}";
+    numbers.multiple = 0.4;
+    EXPECT_LT(worst_against_relief_map(numbers), kVeilRule);
+}
+
+// On planes of its own each number does what it does on the same plane of the sled, and the pose
+// nothing. A block without a plane has no light.
+TEST(FitLight, OnPlanesThatAreOneIsTheSame) {
+    constexpr double kRounding = 1e-9;
+    const Known known({}, FitBeamKind::Cosine);
+    const FitLight light(known.rig, known.places);
+    const std::vector<FitPlaceInState> free{{FitPart::Beam, 0, 0},
+                                            {FitPart::Aim, 1, 0},
+                                            {FitPart::Power, 0},
+                                            {FitPart::Water, 0},
+                                            {FitPart::Offset, 0, 0}};
+    const PathLight path(
+        known.text, known.state.water, {}, light.paths({{.name = {}, .sled = kTilted}}));
+    std::vector<Plane> planes(known.places.size(), floor_plane(kTilted));
+    const BlockLight one = light.at(known.state, path, kTilted, free);
+    const BlockLight same = light.at(known.state, path, {.altitude_m = 9.0}, free, planes);
+    EXPECT_LT((same.logarithm - one.logarithm).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LT((same.slopes - one.slopes).leftCols(4).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_EQ(same.slopes.col(4).norm(), 0.0);
+    EXPECT_EQ(same.by_pose.norm(), 0.0);
+    planes[0].normal.setConstant(std::nan(""));
+    const BlockLight less = light.at(known.state, path, kTilted, free, planes);
+    EXPECT_TRUE(std::isnan(less.logarithm(0)));
+    EXPECT_EQ(less.logarithm(kChannels), same.logarithm(kChannels));
+}
+
 // Every number there is, and the pose's three. The veil's change with the pose is left out.
 void expect_slopes(const FitRigNumbers& numbers, FitBeamKind kind) {
     Known known(numbers, kind);
@@ -123,7 +180,7 @@ void expect_slopes(const FitRigNumbers& numbers, FitBeamKind kind) {
                                        {FitPart::Offset, 0, 1},
                                        {FitPart::Offset, 0, 2}})
         free.push_back(one);
-    const PathRange paths = light.paths({kTilted});
+    const PathRange paths = light.paths({{.name = {}, .sled = kTilted}});
     const auto at = [&](const FitState& state) {
         return light.at(state, {known.text, state.water, state.tint, paths}, kTilted, free);
     };

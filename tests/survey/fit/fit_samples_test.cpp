@@ -56,7 +56,10 @@ class FitSamplesOfAnImage : public testing::Test {
         }
         survey.files = image_files(files, folder_.path() / "out");
         survey.navigation = Navigation("track", poses);
-        return samples_of_images(survey, {kWidth_px, kHeight_px}, kAcross, 1, {});
+        FitRigNumbers numbers;
+        numbers.width_px = kWidth_px;
+        numbers.height_px = kHeight_px;
+        return samples_of_images(survey, fit_rig(numbers).rig(), kAcross, 1, {});
     }
 
     TempFolder folder_;

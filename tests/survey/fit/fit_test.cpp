@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "support/fit_rig.h"
 #include "support/has.h"
+#include "support/hills.h"
 #include "support/temp_folder.h"
+#include "survey/fit/block_planes.h"
 #include "survey/fit/fitted_rig.h"
 #include "survey/simulate/floor_texture.h"
 
@@ -140,6 +142,62 @@ TEST(Fit, LooksPastWhatStonesShade) {
     const FitResult result = fit(guess(), samples, exact_poses(), {});
     expect_told(result, "strobe.fore.aim_along_deg", 4.0 * std::cos(std::atan2(0.1, 0.5)));
     EXPECT_LT(off_at(guess(), result, truth, {.altitude_m = 2.0}), kPredicted);
+}
+
+// Images of hills, of which each sees others, by the relief's own kernel.
+FitSamples samples_of_hills(const Rig& rig, int images) {
+    FitSamples samples;
+    samples.places = fit_places(rig.camera.width_px, rig.camera.height_px, rig.camera.width_px);
+    const ReliefMapMaker maker(rig, {});
+    std::mt19937_64 dice(4);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < images; ++i) {
+        const Hills hills{.depth_m = 1.4 + 0.06 * i,
+                          .height_m = 0.05,
+                          .k_per_m = 6.0,
+                          .p_rad = 1.7 * i,
+                          .q_rad = 2.9 * i};
+        const Relief relief = relief_of(hills, maker, rig.camera.width_px, rig.camera.height_px);
+        const std::vector<float> light = signal_of(maker.map(relief, 0).map);
+        FitImage image{.name = "hills",
+                       .sled = {.altitude_m = hills.depth_m},
+                       .planes = block_planes(relief, samples.places, rig)};
+        for (std::size_t k = 0; k < light.size(); ++k) {
+            const std::size_t pixel = k / kChannels;
+            const float signal = light[k % kChannels * relief.point_m.size() + pixel];
+            image.signal.push_back(signal * static_cast<float>(1.0 + kNoise * normal(dice)));
+        }
+        samples.images.push_back(std::move(image));
+    }
+    return samples;
+}
+
+// The rig's aims are off by 2 degrees. By blocks' own planes they are found to what their errors
+// say; by the plane of the altitude, whose texture the slopes are, several times worse.
+TEST(Fit, FindsTheRigOverReliefByItsRanges) {
+    constexpr double kWorse = 4.0;
+    FitRigNumbers numbers;
+    numbers.width_px = 24;
+    numbers.height_px = 18;
+    FitSamples samples = samples_of_hills(fit_rig(numbers).rig(), 20);
+    numbers.fore_tilt_deg += 2.0;
+    const std::vector<std::pair<std::string, double>> truths{
+        {"strobe.fore.aim_along_deg", 2.0 * std::cos(std::atan2(0.1, 0.5))},
+        {"strobe.aft.aim_along_deg", 0.0},
+        {"strobe.aft.aim_across_deg", 0.0}};
+    const auto off_by = [&](const FitResult& result) {
+        double squares = 0.0;
+        for (const auto& [key, truth] : truths)
+            squares += std::pow(number_of(result, key).value - truth, 2);
+        return std::sqrt(squares);
+    };
+    FitOptions options;
+    options.threads = 2;
+    const FitResult by_ranges = fit(fit_rig(numbers), samples, options, {});
+    for (const auto& [key, truth] : truths) expect_told(by_ranges, key, truth);
+    for (FitImage& image : samples.images) image.planes.clear();
+    const FitResult by_plane = fit(fit_rig(numbers), samples, options, {});
+    EXPECT_GT(off_by(by_plane), kWorse * off_by(by_ranges)) << off_by(by_ranges);
 }
 
 TEST(Fit, FindsTheRigInWaterThatScatters) {
