@@ -16,8 +16,7 @@ namespace aphotic {
 
 class TriangleMesh {
   public:
-    // What the second vertices of triangles names are places in the first. A vertex of a triangle
-    // is finite.
+    // Triangles by their vertices' places; those that they have are finite.
     TriangleMesh(std::span<const Eigen::Vector3f> vertices_m,
                  std::span<const std::array<unsigned, 3>> triangles);
 

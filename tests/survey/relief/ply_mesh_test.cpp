@@ -62,9 +62,9 @@ TEST(PlyMesh, IsReadFromBytes) {
     const Mesh mesh = parse_ply("a.ply", ply, kMany);
     EXPECT_EQ(mesh.vertices_m[3], Eigen::Vector3d(0.0, 2.0, -6.0));
     EXPECT_EQ(mesh.triangles.size(), 2U);
-    EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 5)),
+    EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 3)),
                     "a.ply: the file is cut short: found 0 of 1 elements 'edge'"));
-    EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 40)), "found 3 of 4 elements 'vertex'"));
+    EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 30)), "found 3 of 4 elements 'vertex'"));
 }
 
 TEST(PlyMesh, ThatCannotBeSaysWhy) {
@@ -75,7 +75,7 @@ TEST(PlyMesh, ThatCannotBeSaysWhy) {
     EXPECT_TRUE(has(refusal(with("uchar red", "half red")), "found 'property half red"));
     EXPECT_TRUE(has(refusal(with("double y", "double v")), "vertices without x, y or z"));
     EXPECT_TRUE(has(refusal(with("vertex_indices", "corners")), "faces without vertex_indices"));
-    EXPECT_TRUE(has(refusal(with("1e0", "one")), "found one in vertex 4; allowed: a number"));
+    EXPECT_TRUE(has(refusal(with("1e0", "one")), "found 'one' in vertex 4; allowed: a number"));
     EXPECT_TRUE(has(refusal(with("1e0", "nan")), "vertex 4 with a coordinate that is not finite"));
     EXPECT_TRUE(
         has(refusal(with("3 0 2 3", "3 0 2 4")), "found vertex 4 in face 2; allowed: 0 to 3"));
