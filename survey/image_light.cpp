@@ -40,20 +40,31 @@ void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& m
             : "depths in metres, or in millimetres with --depth-unit mm");
 }
 
-DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file) {
-    const auto [width_px, height_px] = survey.light.size;
+DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file, PlaneSize size) {
+    const double columns = static_cast<double>(survey.light.size.width_px) / size.width_px;
+    const double rows = static_cast<double>(survey.light.size.height_px) / size.height_px;
     const auto ray = [&](double column, double row) {
-        return survey.light.relief->ray(column, row);
+        return survey.light.relief->ray(column * columns, row * rows);
     };
-    const DepthMap map =
-        survey.depth->mesh->scene->depth_map(station_of(survey, file), ray, width_px, height_px);
+    DepthMap map = survey.depth->mesh->scene->depth_map(
+        station_of(survey, file), ray, size.width_px, size.height_px);
     if (std::ranges::none_of(map.depth_m, [](float depth_m) { return std::isfinite(depth_m); }))
         throw InputError("it looks past {}", survey.depth->place.string());
     return map;
 }
 
-DepthMap lit_depth_map(const Survey& survey, const ImageFile& file) {
-    DepthMap map = depth_map_of(survey, file, survey.light.size);
+enum class Detail { Full, Rough };
+
+// Rough: a mesh is seen by fewer rays.
+DepthMap lit_depth_map(const Survey& survey, const ImageFile& file, Detail detail = Detail::Full) {
+    constexpr int kRough_px = 256;
+    PlaneSize size = survey.light.size;
+    if (survey.depth->mesh && detail == Detail::Rough) {
+        const int times = std::max(1, std::max(size.width_px, size.height_px) / kRough_px);
+        size = {.width_px = (size.width_px + times - 1) / times,
+                .height_px = (size.height_px + times - 1) / times};
+    }
+    DepthMap map = depth_map_of(survey, file, size);
     require_unit(survey, file, map);
     return map;
 }
@@ -62,10 +73,10 @@ DepthMap lit_depth_map(const Survey& survey, const ImageFile& file) {
 
 DepthMap depth_map_of(const Survey& survey, const ImageFile& file, PlaneSize size) {
     const DepthMaps& maps = *survey.depth;
-    const DepthMap map = maps.mesh
-                             ? seen_of_mesh(survey, file)
-                             : read_depth_map(depth_file(maps.place, file.source), maps.unit_m);
-    return resized(map, size.width_px, size.height_px);
+    if (maps.mesh) return seen_of_mesh(survey, file, size);
+    return resized(read_depth_map(depth_file(maps.place, file.source), maps.unit_m),
+                   size.width_px,
+                   size.height_px);
 }
 
 std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file) {
@@ -98,7 +109,8 @@ ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px, 
 std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file) {
     const std::optional<Sled> sled = sled_of(survey, file);
     if (!survey.depth) return survey.strobes.cells(*sled);
-    return survey.strobes.relief_cells(lit_depth_map(survey, file), *survey.depth, sled);
+    return survey.strobes.relief_cells(
+        lit_depth_map(survey, file, Detail::Rough), *survey.depth, sled);
 }
 
 std::string light_inputs(const Survey& survey, const ImageFile& file) {
@@ -126,7 +138,7 @@ std::optional<OtherDepth> other_depth(const Survey& survey, const ImageFile& fil
     other.depth->is =
         survey.depth->is == DepthIs::AlongAxis ? DepthIs::AlongRay : DepthIs::AlongAxis;
     const std::optional<Sled> sled = sled_of(survey, file);
-    return OtherDepth{.depth_m = median_of(lit_depth_map(survey, file)),
+    return OtherDepth{.depth_m = median_of(lit_depth_map(survey, file, Detail::Rough)),
                       .by_other_convention = survey.depth->mesh
                                                  ? std::nullopt
                                                  : std::optional(light_of(other, file, 0).map),

@@ -52,24 +52,24 @@ Track::Span Track::span_at(double time_s) const {
 }
 
 Sled Track::at(double time_s) const {
-    const auto [before, after, share] = span_at(time_s);
+    const Span span = span_at(time_s);
     const auto between = [&](double Sled::*part) {
-        return std::lerp(before.sled.*part, after.sled.*part, share);
+        return std::lerp(span.before.sled.*part, span.after.sled.*part, span.share);
     };
     return {between(&Sled::altitude_m), between(&Sled::pitch_rad), between(&Sled::roll_rad)};
 }
 
 Place Track::place_at(double time_s) const {
     constexpr double kRound_rad = 2.0 * std::numbers::pi;
-    const auto [before, after, share] = span_at(time_s);
+    const Span span = span_at(time_s);
     const auto between = [&](double Place::*part) {
-        return std::lerp(before.place.*part, after.place.*part, share);
+        return std::lerp(span.before.place.*part, span.after.place.*part, span.share);
     };
     const double turn_rad =
-        std::remainder(after.place.heading_rad - before.place.heading_rad, kRound_rad);
+        std::remainder(span.after.place.heading_rad - span.before.place.heading_rad, kRound_rad);
     return {.east_m = between(&Place::east_m),
             .north_m = between(&Place::north_m),
-            .heading_rad = before.place.heading_rad + share * turn_rad,
+            .heading_rad = span.before.place.heading_rad + span.share * turn_rad,
             .depth_m = between(&Place::depth_m)};
 }
 

@@ -111,7 +111,7 @@ class PlyReader {
         return line;
     }
 
-    const PlyType* type_named(std::string_view word, std::string_view line) const {
+    [[nodiscard]] const PlyType* type_named(std::string_view word, std::string_view line) const {
         const auto* const type = std::ranges::find_if(kPlyTypes, [&](const PlyType& one) {
             return one.name == word || one.sized_name == word;
         });

@@ -80,11 +80,10 @@ bool ReliefScene::is_seen(const CameraStation& camera,
                           int width_px,
                           int height_px) const {
     constexpr int kAcross = 9;
-    for (int i = 0; i < kAcross * kAcross; ++i) {
-        const double column = (i % kAcross + 0.5) / kAcross * width_px;
-        const double row = (i / kAcross + 0.5) / kAcross * height_px;
-        if (depth_m(camera, ray(column, row))) return true;
-    }
+    const auto place = [](int i, int pixels) { return (i + 0.5) / kAcross * pixels; };
+    for (int row = 0; row < kAcross; ++row)
+        for (int column = 0; column < kAcross; ++column)
+            if (depth_m(camera, ray(place(column, width_px), place(row, height_px)))) return true;
     return false;
 }
 
