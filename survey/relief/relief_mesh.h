@@ -18,7 +18,7 @@
 
 namespace aphotic {
 
-// Embree takes some 150 bytes each.
+// They take some 150 bytes each.
 inline constexpr std::size_t kMostReliefTriangles = 20'000'000;
 
 // An InputError, which names the file.
