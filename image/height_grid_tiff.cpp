@@ -36,8 +36,12 @@ constexpr std::uint32_t kGeoKeyDirectory = 34735;
 constexpr std::uint32_t kGdalMetadata = 42112;
 constexpr std::uint32_t kGdalNodata = 42113;
 
+// None where the file has them of another type, as libtiff then does.
 template <typename Value>
-std::span<const Value> values_of(TIFF* tiff, std::uint32_t tag) {
+std::span<const Value> values_of(TIFF* tiff, std::uint32_t tag, TIFFDataType type) {
+    const TIFFField* const field = ::TIFFFindField(tiff, tag, TIFF_ANY);
+    if (field == nullptr || ::TIFFFieldDataType(field) != type || ::TIFFFieldPassCount(field) == 0)
+        return {};
     std::uint32_t count = 0;
     const Value* values = nullptr;
     if (::TIFFGetField(tiff, tag, &count, &values) != 1) return {};
@@ -45,7 +49,7 @@ std::span<const Value> values_of(TIFF* tiff, std::uint32_t tag) {
 }
 
 std::string text_of(TIFF* tiff, std::uint32_t tag) {
-    const auto letters = values_of<char>(tiff, tag);
+    const auto letters = values_of<char>(tiff, tag, TIFF_ASCII);
     const std::string text(letters.begin(), letters.end());
     return text.substr(0, text.find('\0'));
 }
@@ -53,7 +57,7 @@ std::string text_of(TIFF* tiff, std::uint32_t tag) {
 // Those that stand in the directory itself, by their numbers.
 std::map<int, int> geo_keys(TIFF* tiff) {
     constexpr std::size_t kEntry = 4;  // key, where, count, value
-    const auto shorts = values_of<std::uint16_t>(tiff, kGeoKeyDirectory);
+    const auto shorts = values_of<std::uint16_t>(tiff, kGeoKeyDirectory, TIFF_SHORT);
     std::map<int, int> keys;
     for (std::size_t i = kEntry; i + kEntry <= shorts.size(); i += kEntry)
         if (shorts[i + 1] == 0) keys[shorts[i]] = shorts[i + 3];
@@ -85,10 +89,10 @@ void place_on_map(TIFF* tiff, HeightGrid& grid) {
     constexpr std::size_t kTie = 6;
     constexpr int kRasterType = 1025;
     constexpr int kPoints = 2;
-    const auto scale = values_of<double>(tiff, kModelPixelScale);
-    const auto tie = values_of<double>(tiff, kModelTiepoint);
+    const auto scale = values_of<double>(tiff, kModelPixelScale, TIFF_DOUBLE);
+    const auto tie = values_of<double>(tiff, kModelTiepoint, TIFF_DOUBLE);
     if (scale.size() < 2 || tie.size() != kTie) {
-        const bool is_turned = !values_of<double>(tiff, kModelTransformation).empty();
+        const bool is_turned = !values_of<double>(tiff, kModelTransformation, TIFF_DOUBLE).empty();
         throw InputError(
             "found {}; needed: ModelPixelScale and one ModelTiepoint, as gdalwarp writes them of a "
             "GeoTIFF that is north up",
