@@ -15,6 +15,7 @@
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
 #include "image/exr.h"
+#include "survey/camera_station.h"
 #include "survey/correct/correction_run.h"
 #include "survey/correct/ifdo_results.h"
 #include "survey/images/camera_numbers.h"
@@ -164,12 +165,13 @@ Task rig_task(const CorrectCommandOptions& options) {
     require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     survey.navigation = navigation_of(options.input, survey.files, rig);
-    const bool has_relief = !options.input.depth.place.empty();
-    if (has_relief) survey.depth = options.input.depth;
+    survey.depth = depth_of(options.input, survey.navigation);
+    const bool has_relief = survey.depth.has_value();
     survey.light = naming(file, [&] {
         return light_of_rig(
             rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     });
+    if (has_relief && survey.depth->mesh) require_in_view(survey);
     survey.strobes = strobes_of_rig(
         rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     survey.light.rig_size = own;
@@ -186,7 +188,7 @@ Task task_of(CorrectCommandOptions& options) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
     }
     if (!has_rig && (!navigation.source.empty() || !options.input.depth.place.empty()))
-        throw InputError("--map is one for all images: --nav and --depth-map need --rig");
+        throw InputError("--map is one for all images: --nav, --depth-map and --relief need --rig");
     if (const std::vector<double>& range = options.altitudes_m; !range.empty()) {
         if (range[0] > range[1]) {
             throw InputError(

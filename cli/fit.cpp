@@ -16,6 +16,7 @@
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
+#include "survey/camera_station.h"
 #include "survey/fit/fit_json.h"
 #include "survey/fit/fit_page.h"
 #include "survey/fit/fit_samples.h"
@@ -60,11 +61,12 @@ FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const R
     if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
     Survey survey = read_survey(options.input, options.folder, &rig);
     survey.navigation = navigation_of(options.input, survey.files, rig);
-    const bool has_relief = !options.input.depth.place.empty();
+    survey.depth = depth_of(options.input, survey.navigation);
+    const bool has_relief = survey.depth.has_value();
     if (has_relief) {
-        survey.depth = options.input.depth;
         survey.light =
             light_of_rig(rig, survey.navigation, survey.files, true, kVeilOfCorrection, has_relief);
+        if (survey.depth->mesh) require_in_view(survey);
     }
     survey.strobes =
         strobes_of_rig(rig, survey.navigation, survey.files, true, kVeilOfCorrection, has_relief);
@@ -79,6 +81,7 @@ bool is_given(const CLI::App& app, const std::string& option) {
 // Options of images, which say nothing of maps; all that --nav needs are found out with it.
 constexpr std::array kOfImages{"--nav",
                                "--depth-map",
+                               "--relief",
                                "--bayer",
                                "--crop",
                                "--half",

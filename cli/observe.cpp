@@ -2,6 +2,7 @@
 //
 // aphotic observe IMAGES... --nav FILE -o MAP.exr: the images of one altitude averaged into the
 // pattern of light that they share.
+#include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
@@ -9,7 +10,9 @@
 #include "cli/options.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
+#include "survey/camera_station.h"
 #include "survey/correct/observation.h"
+#include "survey/images/camera_numbers.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +20,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -50,12 +54,24 @@ void print_observation(const Observation& observation, const std::string& map_fi
         say("left out: {}: {}\n", one.image, words_of(one));
 }
 
+// The camera's rays, along which a mesh is seen.
+void look_at_mesh(Survey& survey, std::optional<Rig> rig) {
+    if (!rig) throw InputError("--relief needs --rig, which has the camera's rays");
+    if (const auto images = usual_size(survey.files, survey.camera))
+        static_cast<void>(fit_to(rig->camera, *images));
+    survey.light.size = {rig->camera.width_px, rig->camera.height_px};
+    survey.light.relief =
+        std::make_shared<const ReliefMapMaker>(*rig, LightmapOptions{.has_veil = false});
+    require_in_view(survey);
+}
+
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
     const SurveyInput& input = options.input;
     const std::optional<Rig> rig = rig_of(input);
     Survey survey = read_survey(input, options.output, rig ? &*rig : nullptr);
     survey.navigation = read_navigation(input, survey.files, rig ? &*rig : nullptr);
-    if (!input.depth.place.empty()) survey.depth = input.depth;
+    survey.depth = depth_of(input, survey.navigation);
+    if (survey.depth && survey.depth->mesh) look_at_mesh(survey, rig);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(input.strict));
     write_observation(options.output, observation);

@@ -12,6 +12,7 @@
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "survey/navigation/image_time.h"
+#include "survey/relief/relief_mesh.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -137,6 +138,38 @@ CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input) {
     return nav;
 }
 
+namespace {
+
+void add_mesh_options(CLI::App& app, SurveyInput& input, CLI::Option* maps) {
+    const auto mesh = [&input]() -> FloorMesh& {
+        return input.depth.mesh ? *input.depth.mesh : input.depth.mesh.emplace();
+    };
+    const auto take_file = [&input, mesh](const std::string& file) {
+        input.depth.place = file;
+        mesh();
+    };
+    CLI::Option* const relief = add_option_function<std::string>(app, "--relief", take_file)
+                                    ->check(CLI::ExistingFile)
+                                    ->excludes(maps)
+                                    ->needs(app.get_option("--nav"));
+    const auto take_axes = [mesh](const std::string& word) {
+        const auto* const found = std::ranges::find(kReliefAxesWords, word);
+        mesh().axes = static_cast<ReliefAxes>(found - kReliefAxesWords.begin());
+    };
+    add_option_function<std::string>(app, "--relief-axes", take_axes)
+        ->check(CLI::IsMember(
+            std::vector<std::string>(kReliefAxesWords.begin(), kReliefAxesWords.end())))
+        ->needs(relief);
+    const auto take_place = [&input](const std::string& word) {
+        input.is_by_depth = word == "depth";
+    };
+    add_option_function<std::string>(app, "--relief-place", take_place)
+        ->check(CLI::IsMember({"depth", "altitude"}))
+        ->needs(relief);
+}
+
+}  // namespace
+
 CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input) {
     const OptionGroup group(app, "Relief");
     constexpr double kMillimetre = 1e-3;
@@ -148,6 +181,7 @@ CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input) {
     add_option_function<std::string>(app, "--depth-unit", take)
         ->check(CLI::IsMember({"m", "mm"}))
         ->needs(maps);
+    add_mesh_options(app, input, maps);
     return maps;
 }
 
@@ -250,6 +284,17 @@ Survey read_survey(const SurveyInput& input, const std::filesystem::path& output
     return survey;
 }
 
+std::optional<DepthMaps> depth_of(const SurveyInput& input,
+                                  const std::optional<Navigation>& navigation) {
+    if (input.depth.place.empty()) return std::nullopt;
+    DepthMaps depth = input.depth;
+    if (!depth.mesh) return depth;
+    depth.mesh->is_by_depth = input.is_by_depth.value_or(navigation->tells_depth());
+    depth.mesh->scene =
+        std::make_shared<const ReliefScene>(read_relief_mesh(depth.place), depth.mesh->axes);
+    return depth;
+}
+
 std::optional<Navigation> navigation_of(const SurveyInput& input,
                                         const std::vector<ImageFile>& files,
                                         const Rig& rig) {
@@ -268,6 +313,7 @@ Navigation read_navigation(const SurveyInput& input,
                            const Rig* rig) {
     NavigationOptions options = input.navigation;
     options.jobs = static_cast<std::size_t>(all_cores());
+    options.has_places = input.depth.mesh.has_value();
     return aphotic::read_navigation(options, files, rig);
 }
 
@@ -299,6 +345,13 @@ void print_navigation(const Survey& survey) {
 void print_relief(const Survey& survey) {
     if (!survey.depth) return;
     const DepthMaps& depth = *survey.depth;
+    if (depth.mesh) {
+        say("  relief: {}, {}, {}\n",
+            depth.place.string(),
+            kReliefAxesWords.at(static_cast<std::size_t>(depth.mesh->axes)),
+            depth.mesh->is_by_depth ? "by the navigation's depths" : "by altitudes");
+        return;
+    }
     say("  relief: depth maps of {}, {}{}\n",
         depth.place.string(),
         depth.is == DepthIs::AlongAxis ? "along the axis" : "along rays",

@@ -36,7 +36,8 @@ struct SurveyInput {
     std::vector<std::string> images;
     std::string rig;  // empty: none
     NavigationOptions navigation;
-    DepthMaps depth{};  // without a place: none
+    DepthMaps depth{};  // without a place: none; of a mesh that is not read yet, without its scene
+    std::optional<bool> is_by_depth{};  // none: where the navigation tells depths
     CameraNumbers camera;
     Dropouts dropouts = Dropouts::Mark;
     bool strict = false;
@@ -49,7 +50,8 @@ void add_images(CLI::App& app, SurveyInput& input);
 void add_survey_rig(CLI::App& app, SurveyInput& input);
 // --nav and all that says how it is to be understood.
 CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
-// --depth-map and --depth-unit; and all that says how ranges are to be understood.
+// --depth-map and --depth-unit, --relief and what it is to be understood by; and all that says how
+// ranges are to be understood.
 CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input);
 void add_depth_options(CLI::App& app, SurveyInput& input);
 // --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
@@ -76,6 +78,9 @@ using Settle = std::function<void()>;
 [[nodiscard]] Survey read_survey(const SurveyInput& input,
                                  const std::filesystem::path& output,
                                  const Rig* rig);
+// The depth maps, or the mesh, which is read here. None: the floor is a plane.
+[[nodiscard]] std::optional<DepthMaps> depth_of(const SurveyInput& input,
+                                                const std::optional<Navigation>& navigation);
 // None where depth maps do without.
 [[nodiscard]] std::optional<Navigation> navigation_of(const SurveyInput& input,
                                                       const std::vector<ImageFile>& files,
@@ -92,7 +97,7 @@ using Settle = std::function<void()>;
 // nothing to say.
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
-// "relief: depth maps of depth, along the axis"
+// "relief: depth maps of depth, along the axis"; "relief: reef.ply, east-north-up, by altitudes"
 void print_relief(const Survey& survey);
 
 // "shown as sRGB ..."

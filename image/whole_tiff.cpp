@@ -2,20 +2,16 @@
 #include "image/whole_tiff.h"
 
 #include "base/error.h"
-#include "base/printable.h"
 #include "image/decoded_size.h"
+#include "image/tiff_handle.h"
 
 #include <tiffio.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
-#include <memory>
 #include <new>
 #include <span>
 #include <string>
@@ -24,41 +20,13 @@
 namespace aphotic {
 namespace {
 
-// What libtiff says, instead of on the terminal.
-struct Said {
-    std::string error;              // the first
-    bool has_false_counts = false;  // of bytes, in place of which it made up others
-};
-
-int note_error(TIFF* /*tiff*/, void* said, const char*, const char* format, std::va_list with) {
-    constexpr std::size_t kMost = 300;
-    std::array<char, kMost> text{};
-    static_cast<void>(std::vsnprintf(text.data(), text.size(), format, with));
-    std::string& error = static_cast<Said*>(said)->error;
-    if (error.empty()) error = printable(text.data());
-    return 1;
-}
-
-int note_warning(TIFF* /*tiff*/, void* said, const char*, const char* format, std::va_list) {
-    constexpr const char* kMadeUp = "calculating from imagelength";
-    if (std::strstr(format, kMadeUp) != nullptr) static_cast<Said*>(said)->has_false_counts = true;
-    return 1;
-}
-
 // The first directory of a file, as libtiff reads it.
 class Directory {
   public:
     explicit Directory(const std::filesystem::path& file)
         : size_(std::filesystem::file_size(file)) {
-        constexpr auto kMost_bytes = static_cast<tmsize_t>(256 * kMebi);
-        const std::unique_ptr<TIFFOpenOptions, decltype(&::TIFFOpenOptionsFree)> options(
-            ::TIFFOpenOptionsAlloc(), &::TIFFOpenOptionsFree);
-        if (!options) throw std::bad_alloc();
-        ::TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMost_bytes);
-        ::TIFFOpenOptionsSetErrorHandlerExtR(options.get(), note_error, &said_);
-        ::TIFFOpenOptionsSetWarningHandlerExtR(options.get(), note_warning, &said_);
         // Not mapped, strips as they are stored, their places when they are asked for.
-        tiff_.reset(::TIFFOpenExt(file.c_str(), "rmcO", options.get()));
+        tiff_ = open_tiff(file, "rmcO", said_);
         require_no_error();
     }
 
@@ -96,12 +64,9 @@ class Directory {
     [[nodiscard]] bool has_false_counts() const { return said_.has_false_counts; }
 
   private:
-    struct Close {
-        void operator()(TIFF* tiff) const { ::TIFFClose(tiff); }
-    };
     std::uint64_t size_;
-    Said said_;
-    std::unique_ptr<TIFF, Close> tiff_;
+    SaidOfTiff said_;
+    TiffHandle tiff_;
 };
 
 void require_sound_sizes(const Directory& tiff) {

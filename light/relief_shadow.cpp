@@ -1,39 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/relief_shadow.h"
 
-#include "base/error.h"
-
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
-#include <type_traits>
 #include <vector>
 
 namespace aphotic {
+
 namespace {
 
-using Device = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
-
-// Of one thread: images are spread over threads, not their meshes.
-const Device& device() {
-    static const Device kDevice(rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
-    if (!kDevice) throw RunError("Embree, which casts shadows, cannot be started");
-    return kDevice;
-}
-
-}  // namespace
-
-struct ReliefShadow::Mesh {
-    Device of = device();
-    Scene scene{rtcNewScene(of.get()), rtcReleaseScene};
-};
-
-ReliefShadow::ReliefShadow(const Relief& relief)
-    : relief_(relief), step_px_((relief.width_px + kShadowMesh_px - 1) / kShadowMesh_px) {
-    const std::vector<int> columns = every(step_px_, relief.width_px);
-    const std::vector<int> rows = every(step_px_, relief.height_px);
+// Of known places alone.
+std::vector<std::array<unsigned, 3>> triangles_of(const Relief& relief,
+                                                  const std::vector<int>& columns,
+                                                  const std::vector<int>& rows) {
     std::vector<std::array<unsigned, 3>> triangles;
     const auto add = [&](std::array<unsigned, 3> corners, std::array<std::size_t, 3> pixels) {
         if (std::ranges::all_of(pixels, [&](std::size_t p) { return relief.knows(p); }))
@@ -51,59 +30,32 @@ ReliefShadow::ReliefShadow(const Relief& relief)
             add({first + 1, first + width + 1, first + width}, {b, d, c});
         }
     }
-    auto mesh = std::make_shared<Mesh>();
-    RTCGeometry geometry = rtcNewGeometry(mesh->of.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* const vertices =
-        static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
-                                                    RTC_BUFFER_TYPE_VERTEX,
-                                                    0,
-                                                    RTC_FORMAT_FLOAT3,
-                                                    3 * sizeof(float),
-                                                    columns.size() * rows.size()));
-    auto* const corners =
-        static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
-                                                       RTC_BUFFER_TYPE_INDEX,
-                                                       0,
-                                                       RTC_FORMAT_UINT3,
-                                                       3 * sizeof(unsigned),
-                                                       std::max<std::size_t>(1, triangles.size())));
-    std::size_t n = 0;
-    for (const int row : rows) {
-        for (const int column : columns) {
-            const Eigen::Vector3f& point_m = relief.point_m[relief.at(column, row)];
-            for (int k = 0; k < 3; ++k) vertices[n++] = point_m(k);
-        }
-    }
-    n = 0;
-    if (triangles.empty()) triangles.push_back({0, 0, 0});  // of no area
-    for (const auto& triangle : triangles)
-        for (const unsigned corner : triangle) corners[n++] = corner;
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(mesh->scene.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(mesh->scene.get());
-    mesh_ = std::move(mesh);
+    return triangles;
 }
+
+TriangleMesh mesh_of(const Relief& relief, int step_px) {
+    const std::vector<int> columns = every(step_px, relief.width_px);
+    const std::vector<int> rows = every(step_px, relief.height_px);
+    std::vector<Eigen::Vector3f> vertices_m;
+    for (const int row : rows)
+        for (const int column : columns)
+            vertices_m.push_back(relief.point_m[relief.at(column, row)]);
+    return {vertices_m, triangles_of(relief, columns, rows)};
+}
+
+}  // namespace
+
+ReliefShadow::ReliefShadow(const Relief& relief)
+    : relief_(relief),
+      step_px_((relief.width_px + kShadowMesh_px - 1) / kShadowMesh_px),
+      mesh_(mesh_of(relief, step_px_)) {}
 
 bool ReliefShadow::hides(std::size_t pixel, const Eigen::Vector3d& lamp_m) const {
     const Eigen::Vector3f& point_m = relief_.point_m[pixel];
     const float bias_m = static_cast<float>(kShadowBias) * point_m.norm();
     const Eigen::Vector3f from_m = point_m + bias_m * relief_.normal[pixel];
     const Eigen::Vector3f way = lamp_m.cast<float>() - from_m;
-    RTCRay ray{};
-    ray.org_x = from_m.x();
-    ray.org_y = from_m.y();
-    ray.org_z = from_m.z();
-    ray.dir_x = way.x();
-    ray.dir_y = way.y();
-    ray.dir_z = way.z();
-    ray.tnear = bias_m / way.norm();
-    ray.tfar = 1.0F;
-    ray.mask = ~0U;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(mesh_->scene.get(), &context, &ray);
-    return ray.tfar < 0.0F;
+    return mesh_.blocks(from_m, way, bias_m / way.norm());
 }
 
 }  // namespace aphotic

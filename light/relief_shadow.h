@@ -2,18 +2,16 @@
 //
 // Whether the relief stands between a place of it and a lamp. The relief is a mesh through every
 // n-th of its pixels, n so that it is at most kShadowMesh_px wide; what is narrower casts no
-// shadow, and where the range jumps, the mesh is a wall down to what lies behind. Rays meet it by
-// Embree (I. Wald et al., ACM Transactions on Graphics 33(4), 2014).
+// shadow, and where the range jumps, the mesh is a wall down to what lies behind.
 //
 // A ray begins kShadowBias of the point's distance off the floor, along its normal and towards the
 // lamp: ranges are not as even as floors are.
 #pragma once
 
 #include "light/relief.h"
+#include "light/triangle_mesh.h"
 
 #include <Eigen/Core>
-
-#include <memory>
 
 namespace aphotic {
 
@@ -31,10 +29,9 @@ class ReliefShadow {
     [[nodiscard]] bool hides(std::size_t pixel, const Eigen::Vector3d& lamp_m) const;
 
   private:
-    struct Mesh;
     const Relief& relief_;
     int step_px_;
-    std::shared_ptr<const Mesh> mesh_;
+    TriangleMesh mesh_;
 };
 
 }  // namespace aphotic

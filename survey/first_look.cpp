@@ -88,7 +88,8 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
             return likeness(taken.raw, taken.levels, map, as_signal(one));
         };
         look.depth_m = other->depth_m;
-        look.as_other_convention = like(other->by_other_convention);
+        if (other->by_other_convention)
+            look.as_other_convention = like(*other->by_other_convention);
         if (other->plane) look.as_plane = like(*other->plane);
         look.altitude_m = look.depth_m;
     }

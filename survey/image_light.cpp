@@ -3,9 +3,11 @@
 
 #include "base/error.h"
 #include "base/upper_median.h"
+#include "survey/camera_station.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -30,21 +32,52 @@ void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& m
     if (!(ratio > kOtherUnit || ratio < 1.0 / kOtherUnit)) return;
     throw InputError(
         "found depths of {:.4g} m in the median of its depth map, and an altitude of {:.4g} m; "
-        "allowed: depths in metres, or in millimetres with --depth-unit mm",
+        "allowed: {}",
         depth_m,
-        *altitude_m);
+        *altitude_m,
+        survey.depth->mesh
+            ? "a mesh that has the navigation's sea level, or --relief-place altitude"
+            : "depths in metres, or in millimetres with --depth-unit mm");
 }
 
-DepthMap depth_map_of(const Survey& survey, const ImageFile& file) {
-    const DepthMaps& maps = *survey.depth;
-    DepthMap map = resized(read_depth_map(depth_file(maps.place, file.source), maps.unit_m),
-                           survey.light.size.width_px,
-                           survey.light.size.height_px);
+DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file, PlaneSize size) {
+    const double columns = static_cast<double>(survey.light.size.width_px) / size.width_px;
+    const double rows = static_cast<double>(survey.light.size.height_px) / size.height_px;
+    const auto ray = [&](double column, double row) {
+        return survey.light.relief->ray(column * columns, row * rows);
+    };
+    DepthMap map = survey.depth->mesh->scene->depth_map(
+        station_of(survey, file), ray, size.width_px, size.height_px);
+    if (std::ranges::none_of(map.depth_m, [](float depth_m) { return std::isfinite(depth_m); }))
+        throw InputError("it looks past {}", survey.depth->place.string());
+    return map;
+}
+
+enum class Detail { Full, Rough };
+
+// Rough: a mesh is seen by fewer rays.
+DepthMap lit_depth_map(const Survey& survey, const ImageFile& file, Detail detail = Detail::Full) {
+    constexpr int kRough_px = 256;
+    PlaneSize size = survey.light.size;
+    if (survey.depth->mesh && detail == Detail::Rough) {
+        const int times = std::max(1, std::max(size.width_px, size.height_px) / kRough_px);
+        size = {.width_px = (size.width_px + times - 1) / times,
+                .height_px = (size.height_px + times - 1) / times};
+    }
+    DepthMap map = depth_map_of(survey, file, size);
     require_unit(survey, file, map);
     return map;
 }
 
 }  // namespace
+
+DepthMap depth_map_of(const Survey& survey, const ImageFile& file, PlaneSize size) {
+    const DepthMaps& maps = *survey.depth;
+    if (maps.mesh) return seen_of_mesh(survey, file, size);
+    return resized(read_depth_map(depth_file(maps.place, file.source), maps.unit_m),
+                   size.width_px,
+                   size.height_px);
+}
 
 std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file) {
     if (!survey.navigation) return survey.depth ? std::nullopt : std::optional(Sled{});
@@ -73,7 +106,7 @@ ImageLight light_of(const Survey& survey, const ImageFile& file, int within_px, 
 
 FloorRelief relief_of(const Survey& survey, const ImageFile& file) {
     const DepthMaps& maps = *survey.depth;
-    return floor_relief(depth_map_of(survey, file),
+    return floor_relief(lit_depth_map(survey, file),
                         maps.is,
                         maps.normals,
                         *survey.light.relief,
@@ -83,7 +116,8 @@ FloorRelief relief_of(const Survey& survey, const ImageFile& file) {
 std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file) {
     const std::optional<Sled> sled = sled_of(survey, file);
     if (!survey.depth) return survey.strobes.cells(*sled);
-    return survey.strobes.relief_cells(depth_map_of(survey, file), *survey.depth, sled);
+    return survey.strobes.relief_cells(
+        lit_depth_map(survey, file, Detail::Rough), *survey.depth, sled);
 }
 
 std::string light_inputs(const Survey& survey, const ImageFile& file) {
@@ -91,7 +125,14 @@ std::string light_inputs(const Survey& survey, const ImageFile& file) {
     std::string inputs =
         sled ? fmt::format("{} {} {}", sled->altitude_m, sled->pitch_rad, sled->roll_rad) : "none";
     if (!survey.depth) return inputs;
-    const std::filesystem::path depth = depth_file(survey.depth->place, file.source);
+    const DepthMaps& maps = *survey.depth;
+    const std::filesystem::path depth =
+        maps.mesh ? maps.place : depth_file(maps.place, file.source);
+    if (maps.mesh) {
+        const Place& place = survey.navigation->pose_of(file.source).place;
+        inputs += fmt::format(
+            " {} {} {} {}", place.east_m, place.north_m, place.heading_rad, place.depth_m);
+    }
     return fmt::format("{} {} {}",
                        inputs,
                        std::filesystem::file_size(depth),
@@ -104,8 +145,10 @@ std::optional<OtherDepth> other_depth(const Survey& survey, const ImageFile& fil
     other.depth->is =
         survey.depth->is == DepthIs::AlongAxis ? DepthIs::AlongRay : DepthIs::AlongAxis;
     const std::optional<Sled> sled = sled_of(survey, file);
-    return OtherDepth{.depth_m = median_of(depth_map_of(survey, file)),
-                      .by_other_convention = light_of(other, file, 0).map,
+    return OtherDepth{.depth_m = median_of(lit_depth_map(survey, file, Detail::Rough)),
+                      .by_other_convention = survey.depth->mesh
+                                                 ? std::nullopt
+                                                 : std::optional(light_of(other, file, 0).map),
                       .plane = sled ? std::optional(survey.light.map(*sled)) : std::nullopt};
 }
 

@@ -32,6 +32,9 @@ struct ImageLight {
 // In cells, by strobe: of a survey that knows its light strobe by strobe.
 [[nodiscard]] std::vector<CellPlane> strobe_cells_of(const Survey& survey, const ImageFile& file);
 
+// Of its file, or of the survey's mesh, at this size.
+[[nodiscard]] DepthMap depth_map_of(const Survey& survey, const ImageFile& file, PlaneSize size);
+
 // Its pose; none where depth maps do without.
 [[nodiscard]] std::optional<Sled> sled_of(const Survey& survey, const ImageFile& file);
 
@@ -40,9 +43,9 @@ struct ImageLight {
 
 // What to hold an image with a depth map against.
 struct OtherDepth {
-    double depth_m = 0.0;           // the median of its map, along the axis
-    Lightmap by_other_convention;   // DepthIs
-    std::optional<Lightmap> plane;  // of the navigation, where there is one
+    double depth_m = 0.0;                         // the median of its map, along the axis
+    std::optional<Lightmap> by_other_convention;  // DepthIs; of maps from files
+    std::optional<Lightmap> plane;                // of the navigation, where there is one
 };
 // None without depth maps.
 [[nodiscard]] std::optional<OtherDepth> other_depth(const Survey& survey, const ImageFile& file);

@@ -81,7 +81,7 @@ struct Faces {
 // The lines that count, and of their words those that do.
 Faces read_lines(const std::string& text,
                  const std::string& file_name,
-                 const Vector3d& position_m,
+                 std::size_t most_triangles,
                  std::vector<Vector3d>& vertices_m) {
     std::istringstream lines(text);
     std::string line;
@@ -100,8 +100,7 @@ Faces read_lines(const std::string& text,
                 if (const auto value = finite_number(word)) xyz.push_back(*value);
             }
             if (xyz.size() != values.size() || xyz.size() < 3) refuse("v and three finite numbers");
-            const Vector3d vertex_m = position_m + Vector3d(xyz[0], xyz[1], xyz[2]);
-            vertices_m.emplace_back(vertex_m.unaryExpr(&to_single));
+            vertices_m.emplace_back(xyz[0], xyz[1], xyz[2]);
         } else if (words[0] == "f") {
             Polygon polygon{.line = number, .corners = {}};
             const auto vertices = static_cast<int>(vertices_m.size());
@@ -115,19 +114,19 @@ Faces read_lines(const std::string& text,
                     "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
             }
             faces.triangles += corners - 2;
-            if (faces.triangles <= kMostTriangles) faces.polygons.push_back(std::move(polygon));
+            if (faces.triangles <= most_triangles) faces.polygons.push_back(std::move(polygon));
         }
     }
     return faces;
 }
 
 // Before any polygon is cut: that takes the longer the more there are.
-void require_room(std::size_t triangles, const std::string& file_name) {
-    if (triangles > 0 && triangles <= kMostTriangles) return;
+void require_room(std::size_t triangles, const std::string& file_name, std::size_t most) {
+    if (triangles > 0 && triangles <= most) return;
     throw InputError("{}: found {}; allowed: 1 to {} triangles",
                      file_name,
                      triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
-                     kMostTriangles);
+                     most);
 }
 
 bool has_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -136,9 +135,8 @@ bool has_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).norm() > kLeastTriangleHeight * longest2;
 }
 
-// A polygon as triangles from one corner to the others: from one that sees them all, so that all
-// triangles are the same way round, and of these from the one with the shortest diagonals.
-// Triangles of no area are left out. None where no corner sees all others.
+}  // namespace
+
 std::vector<Triangle> cut(const Mesh& mesh, std::vector<int> corners) {
     const auto at = [&](std::size_t i) {
         return mesh.vertices_m[static_cast<std::size_t>(corners[i])];
@@ -169,6 +167,8 @@ std::vector<Triangle> cut(const Mesh& mesh, std::vector<int> corners) {
     return best;
 }
 
+namespace {
+
 Triangle checked_triangle(const Mesh& mesh,
                           const std::vector<int>& corners,
                           const std::string& file_name) {
@@ -185,15 +185,11 @@ Triangle checked_triangle(const Mesh& mesh,
         corners[2] + 1);
 }
 
-}  // namespace
-
-Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vector3d& position_m) {
-    Mesh mesh;
-    const Faces faces = read_lines(obj, file_name, position_m, mesh.vertices_m);
-    require_room(faces.triangles, file_name);
+void add_triangles(const Faces& faces, const std::string& file_name, bool has_areas, Mesh& mesh) {
     for (const auto& [line, corners] : faces.polygons) {
         if (corners.size() == 3) {
-            mesh.triangles.push_back(checked_triangle(mesh, corners, file_name));
+            mesh.triangles.push_back(has_areas ? checked_triangle(mesh, corners, file_name)
+                                               : Triangle{corners[0], corners[1], corners[2]});
             continue;
         }
         const std::vector<Triangle> triangles = cut(mesh, corners);
@@ -206,6 +202,27 @@ Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vect
         }
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
     }
+}
+
+}  // namespace
+
+Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vector3d& position_m) {
+    Mesh mesh;
+    const Faces faces = read_lines(obj, file_name, kMostTriangles, mesh.vertices_m);
+    require_room(faces.triangles, file_name, kMostTriangles);
+    for (Vector3d& vertex_m : mesh.vertices_m) {
+        const Vector3d placed_m = position_m + vertex_m;
+        vertex_m = placed_m.unaryExpr(&to_single);
+    }
+    add_triangles(faces, file_name, true, mesh);
+    return mesh;
+}
+
+Mesh parse_obj(const std::string& file_name, const std::string& obj, std::size_t most_triangles) {
+    Mesh mesh;
+    const Faces faces = read_lines(obj, file_name, most_triangles, mesh.vertices_m);
+    require_room(faces.triangles, file_name, most_triangles);
+    add_triangles(faces, file_name, false, mesh);
     return mesh;
 }
 

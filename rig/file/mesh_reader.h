@@ -14,8 +14,10 @@
 
 #include "rig/rig.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace aphotic {
 
@@ -34,5 +36,16 @@ inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20U;
 [[nodiscard]] Mesh parse_mesh(const std::string& file_name,
                               const std::string& obj,
                               const Eigen::Vector3d& position_m);
+
+// The same of a survey's mesh: vertices as the file has them, in any frame, and triangles without
+// area among the others.
+[[nodiscard]] Mesh parse_obj(const std::string& file_name,
+                             const std::string& obj,
+                             std::size_t most_triangles);
+
+// A polygon as triangles from one corner to the others: from one that sees them all, so that all
+// triangles are the same way round, and of these from the one with the shortest diagonals.
+// Triangles of no area are left out. None where no corner sees all others.
+[[nodiscard]] std::vector<std::array<int, 3>> cut(const Mesh& mesh, std::vector<int> corners);
 
 }  // namespace aphotic

@@ -7,6 +7,7 @@
 #include "image/exr.h"
 #include "survey/dropout_check.h"
 #include "survey/first_look.h"
+#include "survey/image_light.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -67,8 +68,7 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
 
 // Goes through the images in their order, and drops from the selection what cannot be used.
 struct Pass {
-    const CameraNumbers& camera;
-    const std::optional<DepthMaps>& depth;
+    const Survey& survey;
     const ObservationOptions& options;
     const RunWatch& watch;
     Selection& selection;
@@ -104,10 +104,7 @@ struct Pass {
 
     // Pixels whose own depth is not the altitude's, or not known.
     void leave_out_relief(const ImageFile& file, RawImage& raw) const {
-        const DepthMap map =
-            resized(read_depth_map(depth_file(depth->place, file.source), depth->unit_m),
-                    raw.width_px,
-                    raw.height_px);
+        const DepthMap map = depth_map_of(survey, file, {raw.width_px, raw.height_px});
         for (std::size_t i = 0; i < raw.samples.size(); ++i) {
             const double off_m = std::abs(static_cast<double>(map.depth_m[i % map.depth_m.size()]) -
                                           options.altitude_m);
@@ -117,13 +114,13 @@ struct Pass {
     }
 
     [[nodiscard]] ReadImage read(const ImageFile& file) const {
-        SurveyImage taken = read_survey_image(file.source, camera);
+        SurveyImage taken = read_survey_image(file.source, survey.camera);
         LightCells cells = light_cells(taken, {}, file);
         take_off_black(taken);
         if (std::ranges::any_of(taken.raw.samples, [](float s) { return std::isinf(s); }))
             throw InputError("a sample is infinite");
         if (options.normalise) divide_by_own_mean(taken.raw);
-        if (depth) leave_out_relief(file, taken.raw);
+        if (survey.depth) leave_out_relief(file, taken.raw);
         return {.raw = std::move(taken.raw), .cells = std::move(cells)};
     }
 };
@@ -283,7 +280,7 @@ Observation observe(const Survey& survey,
     for (const ChosenImage& image : selection.images) files.push_back(image.file);
     observation.looks_wrong =
         suspicions_of(files, survey.camera, survey.navigation, options.jobs, watch);
-    Pass pass{survey.camera, survey.depth, options, watch, selection};
+    Pass pass{survey, options, watch, selection};
     const auto drop = [&] { return drop_unlit(survey, selection, observation); };
     const Observed observed = options.average == Average::Mean
                                   ? running_mean(pass, drop)

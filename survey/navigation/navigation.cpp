@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "base/words.h"
-#include "survey/navigation/vehicle_pose.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -191,11 +190,17 @@ std::vector<std::string> Navigation::images() const {
     return images;
 }
 
+bool Navigation::tells_depth() const {
+    return std::ranges::any_of(
+        poses_, [](const auto& pose) { return std::isfinite(pose.second.place.depth_m); });
+}
+
 void Navigation::mount(const Mounting& mounting) {
     for (auto& [key, pose] : poses_) {
         // Of the vehicle: what no vehicle can have is said in its own numbers.
         if (!pose.fault.empty() || !fault_of(pose.sled).empty()) continue;
         try {
+            pose.place = camera_place(pose.place, pose.sled, mounting);
             pose.sled = camera_pose(pose.sled, mounting);
         } catch (const InputError& error) {
             pose.fault = error.what();

@@ -13,6 +13,7 @@
 
 #include "rig/rig.h"
 #include "survey/images/image_files.h"
+#include "survey/navigation/vehicle_pose.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -59,6 +60,7 @@ struct ImagePose {
     Sled sled{};
     std::size_t line = 0;  // of the file; 0: of none
     std::string fault{};   // why the source tells no pose; or empty
+    Place place{};         // where the source tells it, and is asked to
 };
 
 // Whether the source tells the angles, for the whole survey; else poses have another's, as the
@@ -86,6 +88,9 @@ class Navigation {
     // are none that a sled can have: that is of one image, and the others can do without it.
     [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
 
+    // The name that stands in messages.
+    [[nodiscard]] const std::string& source() const { return source_; }
+
     // From now on poses, which were the vehicle's, are the camera's.
     void mount(const Mounting& mounting);
 
@@ -96,6 +101,9 @@ class Navigation {
     // All that it knows a pose of, as the source has them, in its order.
     [[nodiscard]] std::vector<std::string> images() const;
     [[nodiscard]] const ToldAngles& told() const { return told_; }
+
+    // Whether any pose has the vehicle's depth.
+    [[nodiscard]] bool tells_depth() const;
 
     // Which angles poses have from anywhere: the source, or a rig that stands in for it.
     [[nodiscard]] const ToldAngles& known() const { return known_; }

@@ -66,7 +66,8 @@ std::vector<KnownFormat> formats_in(std::string_view json) {
     for (const nlohmann::json& one : nlohmann::json::parse(json)) {
         KnownFormat format{.name = one.at("format").get<std::string>(), .columns = {}};
         for (std::size_t field = 0; field < kNavigationFields.size(); ++field)
-            one.at(std::string(kNavigationFields.at(field))).get_to(format.columns.at(field));
+            format.columns.at(field) =
+                one.value(std::string(kNavigationFields.at(field)), std::vector<std::string>{});
         formats.push_back(std::move(format));
     }
     return formats;
@@ -236,9 +237,10 @@ void require_units(const HeaderRequest& request, const NavigationColumns& column
                      printable(unit_in(name)),
                      allowed);
     };
-    if (kLengths.contains(unit_in(columns.name(Altitude)))) fail(Altitude, "metres");
+    for (const NavigationField length : {Altitude, East, North, Depth})
+        if (kLengths.contains(unit_in(columns.name(length)))) fail(length, "metres");
     if (request.angles_in == AngleUnit::Radians) return;
-    for (const NavigationField angle : {Pitch, Roll}) {
+    for (const NavigationField angle : {Pitch, Roll, Heading}) {
         if (kRadians.contains(unit_in(columns.name(angle))))
             fail(angle, "degrees, or --angles-in rad");
     }
@@ -260,7 +262,13 @@ NavigationColumns navigation_columns(const HeaderRequest& request, const Header&
     std::optional<NavigationColumns> columns = recognised(told, formats_of(request), header);
     if (!columns) refuse_header(request, header, told);
     // One of them says where the images are; which, --columns may choose.
-    auto& [image, time, altitude, pitch, roll] = columns->places;
+    auto& image = columns->places[0];
+    auto& time = columns->places[1];
+    constexpr auto kFirstOfPlace = static_cast<std::ptrdiff_t>(NavigationField::East);
+    if (!request.has_places)
+        std::copy(told.places.begin() + kFirstOfPlace,
+                  told.places.end(),
+                  columns->places.begin() + kFirstOfPlace);
     if (image && told.place(NavigationField::Time) && !told.place(NavigationField::Image))
         image.reset();
     if (image) time.reset();

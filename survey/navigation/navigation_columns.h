@@ -5,6 +5,10 @@
 // (formats.json): Aphotic's, oplab's, BIIGLE's and SQUIDLE+'s CSV, HabCam's .img, PANGAEA's tab
 // files, and any table whose names say enough, with units where they are in doubt.
 //
+// Where the vehicle was is read on request alone: east and north in metres of any one frame, the
+// heading clockwise from north, the depth below the sea level. x and y are of no certain direction,
+// and taken where they are given for east and north.
+//
 // All are in metres and degrees. Heights over the sea level are never taken: gps_altitude,
 // SUB_altitude, pose.dep, depth, and PANGAEA's altitude [m].
 //
@@ -30,9 +34,16 @@ namespace aphotic {
 // fault of the pose.
 [[nodiscard]] double number_in(ImagePose& pose, std::string_view column, std::string_view field);
 
-enum class NavigationField { Image, Time, Altitude, Pitch, Roll };
-inline constexpr std::array<std::string_view, 5> kNavigationFields{
-    "image", "time", "altitude_m", "pitch_deg", "roll_deg"};
+enum class NavigationField { Image, Time, Altitude, Pitch, Roll, East, North, Heading, Depth };
+inline constexpr std::array<std::string_view, 9> kNavigationFields{"image",
+                                                                   "time",
+                                                                   "altitude_m",
+                                                                   "pitch_deg",
+                                                                   "roll_deg",
+                                                                   "east_m",
+                                                                   "north_m",
+                                                                   "heading_deg",
+                                                                   "depth_m"};
 
 // Other names of columns, by ours of kNavigationFields.
 using ColumnNames = std::map<std::string, std::string>;
@@ -70,6 +81,7 @@ struct HeaderRequest {
     ColumnNames given{};
     AngleUnit angles_in = AngleUnit::Degrees;
     bool is_pangaeas = false;
+    bool has_places = false;  // where the vehicle was is asked for
 };
 
 // Whether the columns are of a format, with those that are given.

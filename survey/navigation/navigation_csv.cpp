@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -26,7 +27,8 @@ namespace {
 //
 //   identifier time latitude longitude X Y Z phi theta psi left right altitude radius cross-over
 //
-// Each line tells of two images, left and right. phi, theta and psi (radians) turn north, east and
+// Each line tells of two images, left and right. X, Y and Z are metres north and east of the file's
+// origin, and down. phi, theta and psi (radians) turn north, east and
 // down, in this order of axes, into the stereo frame: X right in the image, Y to its bottom, Z
 // along the axis. So the way down has these parts in the camera's own frame, whose x runs to the
 // image's top (vehicle_pose.h):
@@ -34,12 +36,27 @@ namespace {
 //   (x, y, z) = (-cos theta sin phi, -sin theta, cos theta cos phi)
 //   pitch = -asin x        roll = atan2(y, z)
 //
+// and the image's top points to
+//
+//   north, east = sin psi cos phi - cos psi sin theta sin phi, -cos psi cos phi - sin psi sin theta
+//   sin phi
+//
 // phi = 0.0873, theta = 0: pitch 5.002 degrees, roll 0. The altitude is the vehicle's, 0 where its
 // altimeter lost the floor.
 //
 // Source: the comments that seabed_slam and oplab_pipeline (auv_nav, parse_acfr_stereo_pose.py)
 // write into these files.
-enum AcfrWord : std::size_t { kPhi = 7, kTheta = 8, kLeft = 10, kRight = 11, kAltitude = 12 };
+enum AcfrWord : std::size_t {
+    kX = 4,
+    kY = 5,
+    kZ = 6,
+    kPhi = 7,
+    kTheta = 8,
+    kPsi = 9,
+    kLeft = 10,
+    kRight = 11,
+    kAltitude = 12
+};
 constexpr std::size_t kAcfrWords = 15;
 
 bool is_numeric_word(std::string_view word) {
@@ -66,6 +83,16 @@ std::array<ImagePose, 2> acfr_poses(const std::vector<std::string>& words, std::
     } else {
         const double phi = number_in(pose, "X-axis Euler angle", words[kPhi]);
         const double theta = number_in(pose, "Y-axis Euler angle", words[kTheta]);
+        ImagePose unsaid;  // who asks for the place says what is missing
+        const auto of_place = [&](AcfrWord word) { return number_in(unsaid, "", words[word]); };
+        const double psi = of_place(kPsi);
+        const double tilt = std::sin(theta) * std::sin(phi);
+        const double north = std::sin(psi) * std::cos(phi) - std::cos(psi) * tilt;
+        const double east = -std::cos(psi) * std::cos(phi) - std::sin(psi) * tilt;
+        pose.place = {.east_m = of_place(kY),
+                      .north_m = of_place(kX),
+                      .heading_rad = std::atan2(east, north),
+                      .depth_m = of_place(kZ)};
         pose.sled = {.altitude_m = number_in(pose, "altitude", words[kAltitude]),
                      .pitch_rad = std::asin(std::cos(theta) * std::sin(phi)),
                      .roll_rad = std::atan2(-std::sin(theta), std::cos(theta) * std::cos(phi))};
@@ -169,6 +196,17 @@ ImagePose pose_in(const Layout& layout,
     pose.sled.altitude_m = number(Altitude);
     if (columns.place(Pitch)) pose.sled.pitch_rad = number(Pitch) * radians_per_unit;
     if (columns.place(Roll)) pose.sled.roll_rad = number(Roll) * radians_per_unit;
+    // Who asks for it says so where one is missing.
+    ImagePose unsaid;
+    const auto of_place = [&](NavigationField field, double unit) {
+        const auto column = columns.place(field);
+        return column ? number_in(unsaid, columns.name(field), fields[*column]) * unit
+                      : std::numeric_limits<double>::quiet_NaN();
+    };
+    pose.place = {.east_m = of_place(East, 1.0),
+                  .north_m = of_place(North, 1.0),
+                  .heading_rad = of_place(Heading, radians_per_unit),
+                  .depth_m = of_place(Depth, 1.0)};
     return pose;
 }
 
@@ -287,7 +325,7 @@ bool is_pangaeas(std::string_view text) {
 std::string cut_warning(const std::string& name, const Layout& layout, const TextRow& row) {
     if (row.has_line_end || layout.is_acfrs || row.fields.size() != layout.columns.count) return "";
     const std::size_t last = row.fields.size() - 1;
-    for (const NavigationField field : {Time, Altitude, Pitch, Roll}) {
+    for (const NavigationField field : {Time, Altitude, Pitch, Roll, East, North, Heading, Depth}) {
         if (layout.columns.place(field) != last) continue;
         return fmt::format(
             "{}:{}: the file ends within this line, without a line end: if it was cut short, {} = "
@@ -326,12 +364,16 @@ NavigationTable parse_navigation_csv(const std::string& name,
                                      std::string_view text,
                                      const Sled& rig_sled,
                                      const ColumnNames& given,
-                                     AngleUnit angles_in) {
+                                     AngleUnit angles_in,
+                                     bool has_places) {
     const double radians_per_unit = angles_in == AngleUnit::Degrees ? kRadiansPerDegree : 1.0;
     TableText lines(name, text);
-    LayoutReader reader(
-        lines,
-        {.file = name, .given = given, .angles_in = angles_in, .is_pangaeas = is_pangaeas(text)});
+    LayoutReader reader(lines,
+                        {.file = name,
+                         .given = given,
+                         .angles_in = angles_in,
+                         .is_pangaeas = is_pangaeas(text),
+                         .has_places = has_places});
     const std::optional<Layout> layout = reader.read();
     NavigationTable table;
     while (layout && lines.find_row(layout->separator)) {

@@ -51,6 +51,7 @@ struct NavigationTable {
                                                    std::string_view text,
                                                    const Sled& rig_sled,
                                                    const ColumnNames& given = {},
-                                                   AngleUnit angles_in = AngleUnit::Degrees);
+                                                   AngleUnit angles_in = AngleUnit::Degrees,
+                                                   bool has_places = false);
 
 }  // namespace aphotic

@@ -164,7 +164,8 @@ Navigation navigation_by_time(const NavigationTable& table,
     std::vector<TrackPoint> points;
     for (const auto& [pose, time_s] : table.rows) {
         if (pose.fault.empty() && is_of_use(pose.sled, mounting, options))
-            points.push_back({.time_s = time_s, .sled = pose.sled, .line = pose.line});
+            points.push_back(
+                {.time_s = time_s, .sled = pose.sled, .line = pose.line, .place = pose.place});
     }
     const ImagePose& first = table.rows.front().pose;
     if (points.empty()) {
@@ -187,6 +188,7 @@ Navigation navigation_by_time(const NavigationTable& table,
         const ImageTime time = image_time(image, options.time_mask);
         if (time.lacks_zone) ++without_zone;
         pose.sled = track.at(time.time_s + options.clock_offset_s);
+        pose.place = track.place_at(time.time_s + options.clock_offset_s);
     };
     Navigation navigation(
         options.source, poses_of(files, options.jobs, read), told, ImagesKnownBy::Path);
@@ -334,7 +336,8 @@ Navigation parse_navigation(std::string_view text,
                                                        text,
                                                        rig != nullptr ? rig->sled : Sled{},
                                                        options.columns,
-                                                       options.angles_in);
+                                                       options.angles_in,
+                                                       options.has_places);
     if (table.are_cameras_own) require_no_place(options, mounting);
     Navigation vehicle = navigation_of_table(table, options, files, mounting);
     if (!table.cut_warning.empty()) vehicle.warn(table.cut_warning);

@@ -56,6 +56,7 @@ struct NavigationOptions {
     std::string source{};  // a file, or kNavigationInTags
     ColumnNames columns{};
     AngleUnit angles_in = AngleUnit::Degrees;
+    bool has_places = false;  // where the vehicle was is read, too
     std::string time_mask{};  // of the images' names
     double clock_offset_s = 0.0;
     double longest_gap_s = kLongestGap_s;

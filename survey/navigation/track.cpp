@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace aphotic {
@@ -19,10 +20,10 @@ Track::Track(std::vector<TrackPoint> points, double longest_gap_s)
     points_.erase(std::unique(points_.begin(), points_.end(), is_again), points_.end());
 }
 
-Sled Track::at(double time_s) const {
+Track::Span Track::span_at(double time_s) const {
     if (points_.empty()) throw InputError("has no line that could be used");
     const auto after = std::ranges::lower_bound(points_, time_s, {}, &TrackPoint::time_s);
-    if (after != points_.end() && after->time_s == time_s) return after->sled;
+    if (after != points_.end() && after->time_s == time_s) return {*after, *after};
     if (after == points_.begin()) {
         throw InputError("the image's time, {}, is {:.6g} s before the first, of line {}",
                          utc_text(time_s),
@@ -47,11 +48,29 @@ Sled Track::at(double time_s) const {
             after->line,
             longest_gap_s_);
     }
-    const double share = (time_s - before->time_s) / gap_s;
+    return {*before, *after, (time_s - before->time_s) / gap_s};
+}
+
+Sled Track::at(double time_s) const {
+    const Span span = span_at(time_s);
     const auto between = [&](double Sled::*part) {
-        return std::lerp(before->sled.*part, after->sled.*part, share);
+        return std::lerp(span.before.sled.*part, span.after.sled.*part, span.share);
     };
     return {between(&Sled::altitude_m), between(&Sled::pitch_rad), between(&Sled::roll_rad)};
+}
+
+Place Track::place_at(double time_s) const {
+    constexpr double kRound_rad = 2.0 * std::numbers::pi;
+    const Span span = span_at(time_s);
+    const auto between = [&](double Place::*part) {
+        return std::lerp(span.before.place.*part, span.after.place.*part, span.share);
+    };
+    const double turn_rad =
+        std::remainder(span.after.place.heading_rad - span.before.place.heading_rad, kRound_rad);
+    return {.east_m = between(&Place::east_m),
+            .north_m = between(&Place::north_m),
+            .heading_rad = span.before.place.heading_rad + span.share * turn_rad,
+            .depth_m = between(&Place::depth_m)};
 }
 
 }  // namespace aphotic

@@ -4,13 +4,14 @@
 //
 //   pose(t) = pose_i + (pose_i+1 - pose_i) (t - t_i) / (t_i+1 - t_i),     t_i <= t <= t_i+1
 //
-// At a point's own time it is that point's pose. A point's angles are within 89.9 degrees of level,
+// and their places alike, headings the shorter way round. At a point's own time it is that point's
+// pose. A point's angles are within 89.9 degrees of level,
 // so that this is the shorter way round. Where altitude changes with an acceleration a, it is off
 // by a (t_i+1 - t_i)^2 / 8 at most: under a sled that a swell heaves by half a metre every ten
 // seconds, 0.2 m/s^2, that is 0.1 m over kLongestGap_s, the width of an altitude bin.
 #pragma once
 
-#include "rig/rig.h"
+#include "survey/navigation/vehicle_pose.h"
 
 #include <cstddef>
 #include <vector>
@@ -23,6 +24,7 @@ struct TrackPoint {
     double time_s = 0.0;
     Sled sled{};
     std::size_t line = 0;  // of the file
+    Place place{};
 };
 
 class Track {
@@ -33,8 +35,17 @@ class Track {
     // An InputError when the time is before the first point, after the last, or between two that
     // are more than longest_gap_s apart.
     [[nodiscard]] Sled at(double time_s) const;
+    [[nodiscard]] Place place_at(double time_s) const;
 
   private:
+    // Two points, or twice one, and how far from the first to the second the time is.
+    struct Span {
+        const TrackPoint& before;
+        const TrackPoint& after;
+        double share = 0.0;
+    };
+    [[nodiscard]] Span span_at(double time_s) const;
+
     std::vector<TrackPoint> points_;  // by time
     double longest_gap_s_;
 };

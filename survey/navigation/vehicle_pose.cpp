@@ -16,14 +16,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-Eigen::Matrix3d camera_to_vehicle(const Mounting& mounting) {
-    const Vector3d& turn_rad = mounting.roll_pitch_yaw_rad;
-    return (Eigen::AngleAxisd(turn_rad.z(), Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(turn_rad.y(), Vector3d::UnitY()) *
-            Eigen::AngleAxisd(turn_rad.x(), Vector3d::UnitX()))
-        .toRotationMatrix();
-}
-
 // Of whoever sees this way down.
 double pitch_of(const Vector3d& down) {
     return -std::asin(std::clamp(down.x(), -1.0, 1.0));
@@ -33,6 +25,13 @@ double roll_of(const Vector3d& down) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d turn_by(const Vector3d& roll_pitch_yaw_rad) {
+    return (Eigen::AngleAxisd(roll_pitch_yaw_rad.z(), Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(roll_pitch_yaw_rad.y(), Vector3d::UnitY()) *
+            Eigen::AngleAxisd(roll_pitch_yaw_rad.x(), Vector3d::UnitX()))
+        .toRotationMatrix();
+}
 
 bool is_mounted_apart(const Mounting& mounting) {
     return !mounting.position_m.isZero(0.0) || !mounting.roll_pitch_yaw_rad.isZero(0.0);
@@ -47,7 +46,7 @@ Sled camera_pose(const Sled& vehicle, const Mounting& mounting) {
                 vehicle.pitch_rad,
                 vehicle.roll_rad};
     }
-    const Vector3d seen = camera_to_vehicle(mounting).transpose() * down;
+    const Vector3d seen = turn_by(mounting.roll_pitch_yaw_rad).transpose() * down;
     if (seen.z() <= 0.0) {
         throw InputError(
             "the camera looks {:.3g} degrees above the horizon; allowed: below it, to see the "
@@ -67,6 +66,18 @@ Sled camera_pose(const Sled& vehicle, const Mounting& mounting) {
     return {height_m / seen.z(), pitch_of(seen), roll_of(seen)};
 }
 
+Place camera_place(const Place& place, const Sled& vehicle, const Mounting& mounting) {
+    if (!is_mounted_apart(mounting) || std::isnan(place.heading_rad)) return place;
+    const Eigen::Matrix3d to_world =
+        turn_by({vehicle.roll_rad, vehicle.pitch_rad, place.heading_rad});
+    const Vector3d lever_m = to_world * mounting.position_m;
+    const Vector3d ahead = to_world * turn_by(mounting.roll_pitch_yaw_rad).col(0);
+    return {.east_m = place.east_m + lever_m.y(),
+            .north_m = place.north_m + lever_m.x(),
+            .heading_rad = std::atan2(ahead.y(), ahead.x()),
+            .depth_m = place.depth_m + lever_m.z()};
+}
+
 Sled vehicle_pose(const Sled& camera, const Mounting& mounting) {
     const Vector3d seen = -floor_plane(camera).normal;
     const bool is_along_axis = mounting.altitude_is == AltitudeIs::Axis;
@@ -76,7 +87,7 @@ Sled vehicle_pose(const Sled& camera, const Mounting& mounting) {
                 camera.pitch_rad,
                 camera.roll_rad};
     }
-    const Vector3d down = camera_to_vehicle(mounting) * seen;
+    const Vector3d down = turn_by(mounting.roll_pitch_yaw_rad) * seen;
     if (down.z() <= 0.0)
         throw InputError("found a pose in which the vehicle's z points up; allowed: down");
     const double height_m = camera.altitude_m * seen.z() + down.dot(mounting.position_m);

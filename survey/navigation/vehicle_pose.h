@@ -20,13 +20,36 @@
 // but for the altitude, and with `axis` and no offset the altitude's, too. Level, at 2 m, a camera
 // 0.5 m below the origin and pitched up by 60 degrees is at 1.5 m / cos(60 deg) = 3 m.
 //
+// In the world, x north, y east, z down, camera and vehicle stand by their headings h, clockwise
+// from north, and their place:
+//
+//   W                = Rz(h) Ry(p) Rx(q)             from the vehicle's frame to the world's
+//   camera's place   = the vehicle's + W position_m
+//            heading = atan2(f_y, f_x), f = W R x    of its top row
+//
 // The floor has no slope, so that the nearest point of it is straight below: `plumb` and `nearest`
 // are the same number here. On a slope of s they differ by cos s: 1.5 % at 10 degrees.
 #pragma once
 
 #include "rig/rig.h"
 
+#include <Eigen/Core>
+
+#include <limits>
+
 namespace aphotic {
+
+// Where a vehicle or its camera is in the world, in the frame of a map projection or of a survey's
+// own. NaN: not told.
+struct Place {
+    double east_m = std::numeric_limits<double>::quiet_NaN();
+    double north_m = std::numeric_limits<double>::quiet_NaN();
+    double heading_rad = std::numeric_limits<double>::quiet_NaN();
+    double depth_m = std::numeric_limits<double>::quiet_NaN();  // below the sea level
+};
+
+// Rz(yaw) Ry(pitch) Rx(roll).
+[[nodiscard]] Eigen::Matrix3d turn_by(const Eigen::Vector3d& roll_pitch_yaw_rad);
 
 // Whether the camera's place or turn is another than the vehicle's.
 [[nodiscard]] bool is_mounted_apart(const Mounting& mounting);
@@ -34,6 +57,9 @@ namespace aphotic {
 // An InputError with its numbers when the camera's axis does not come down on the floor, or the
 // camera would be under it.
 [[nodiscard]] Sled camera_pose(const Sled& vehicle, const Mounting& mounting);
+
+// Of the camera, from that of the vehicle in this pose.
+[[nodiscard]] Place camera_place(const Place& place, const Sled& vehicle, const Mounting& mounting);
 
 // The vehicle's pose that has this camera's, as the navigation is to tell it. An InputError when
 // the vehicle's own z does not come down on the floor.

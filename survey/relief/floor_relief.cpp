@@ -115,6 +115,9 @@ struct ReliefWriter {
 }  // namespace
 
 nlohmann::ordered_json to_json(const DepthMaps& maps) {
+    if (maps.mesh)
+        return {{"axes", kReliefAxesWords.at(static_cast<std::size_t>(maps.mesh->axes))},
+                {"placed_by", maps.mesh->is_by_depth ? "depth" : "altitude"}};
     return {{"unit_m", maps.unit_m ? nlohmann::ordered_json(*maps.unit_m) : nullptr},
             {"is", maps.is == DepthIs::AlongAxis ? "axis" : "ray"},
             {"normals", maps.normals == NormalsFrom::Depth ? "depth" : "floor"}};

@@ -12,11 +12,13 @@
 #include "lightmap/relief_map.h"
 #include "rig/rig.h"
 #include "survey/relief/depth_map.h"
+#include "survey/relief/relief_scene.h"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,10 +29,18 @@ inline constexpr double kOffPlane = 4.0;
 enum class DepthIs { AlongAxis, AlongRay };
 enum class NormalsFrom { Depth, Floor };
 
-// The depth maps of a survey: a folder with one an image, or the file of the one image.
+// A mesh of the floor, which gives each image its depth map by the navigation.
+struct FloorMesh {
+    std::shared_ptr<const ReliefScene> scene;
+    ReliefAxes axes = ReliefAxes::EastNorthUp;
+    bool is_by_depth = false;  // cameras stand by the navigation's depth; else over the mesh
+};
+
+// The depth maps of a survey: a folder with one an image, the file of the one image, or a mesh.
 struct DepthMaps {
     std::filesystem::path place{};
-    std::optional<double> unit_m{};  // none: as depth_map.h says
+    std::optional<FloorMesh> mesh{};  // whose file the place is
+    std::optional<double> unit_m{};   // none: as depth_map.h says
     DepthIs is = DepthIs::AlongAxis;
     NormalsFrom normals = NormalsFrom::Depth;
 };

@@ -75,7 +75,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
               "or 1%"},
              {correct + "--columns alt=h",
               "--columns: found 'alt=h'; allowed: NAME=COLUMN, NAME one of image, time, "
-              "altitude_m, pitch_deg, roll_deg"},
+              "altitude_m, pitch_deg, roll_deg, east_m, north_m, heading_deg, depth_m"},
              {correct + "--columns image=", "--columns: found 'image='; allowed: NAME=COLUMN"},
              {correct + "--angles-in grad", "--angles-in"},
              {correct + "--image-time YYMM",

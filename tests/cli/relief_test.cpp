@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images of a step of 0.3 m, corrected by depth maps of each kind: one cosine lamp 0.3 m ahead of
-// the camera, in water that absorbs nothing, so that the signal is z^2/d^4 in closed form.
+// Images of a step of 0.3 m, corrected by depth maps of each kind and by meshes: one cosine lamp
+// 0.3 m ahead of the camera, in water that absorbs nothing, so that the signal is z^2/d^4 in closed
+// form.
 #include "base/npy_file.h"
 #include "rig/rig.h"
 #include "support/command_test.h"
 #include "support/exr_file.h"
+#include "support/geotiff.h"
 #include "support/png.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
 namespace aphotic::relief_test {
 namespace {
@@ -246,6 +250,180 @@ TEST_F(CommandRelief, AStrobeThatIsOutIsToldOnReliefToo) {
         EXPECT_NEAR(found[i], expected[i], kOfQuantities * expected[i]) << i;
 }
 
+// The step in the world, its edge under a camera that is bound that way: 300 m out, 100 m deep.
+class CommandMesh : public CommandRelief {
+  protected:
+    static constexpr double kEast_m = 500300.0;
+    static constexpr double kNorth_m = 5000700.0;
+    static constexpr double kDepth_m = 100.0;
+
+    void write_place(double heading_deg, const std::string& tilts = "0,0") const {
+        write_file(path("place.csv"),
+                   fmt::format(
+                       "image,altitude_m,pitch_deg,roll_deg,easting [m],northing [m],heading [deg],"
+                       "depth [m]\nstep.exr,2.0,{},{},{},{},{}\n",
+                       tilts,
+                       kEast_m,
+                       kNorth_m,
+                       heading_deg,
+                       kDepth_m));
+    }
+    // Corners ahead, to starboard and down of the camera, four to a face; heights up.
+    void write_ply(const std::string& file,
+                   double heading_deg,
+                   const std::vector<std::array<double, 3>>& corners) const {
+        const double heading = heading_deg * std::numbers::pi / 180.0;
+        std::string ply = fmt::format(
+            "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+            "property double z\nelement face {}\nproperty list uchar int "
+            "vertex_indices\nend_header\n",
+            corners.size(),
+            corners.size() / 4);
+        for (const auto& [ahead, across, down] : corners)
+            ply += fmt::format("{} {} {}\n",
+                               kEast_m + ahead * std::sin(heading) + across * std::cos(heading),
+                               kNorth_m + ahead * std::cos(heading) - across * std::sin(heading),
+                               -kDepth_m - down);
+        for (std::size_t i = 0; i < corners.size(); i += 4)
+            ply += fmt::format("4 {} {} {} {}\n", i, i + 1, i + 2, i + 3);
+        write_file(path(file), ply);
+    }
+    void write_step(double heading_deg) const {
+        write_ply("step.ply",
+                  heading_deg,
+                  {{-3, -3, 2.0},
+                   {3, -3, 2.0},
+                   {3, 0, 2.0},
+                   {-3, 0, 2.0},  //
+                   {-3, 0, 2.3},
+                   {3, 0, 2.3},
+                   {3, 3, 2.3},
+                   {-3, 3, 2.3},  //
+                   {-3, 0, 2.0},
+                   {3, 0, 2.0},
+                   {3, 0, 2.3},
+                   {-3, 0, 2.3}});
+    }
+    // Green of the step's image after these options.
+    [[nodiscard]] std::vector<float> corrected(const std::string& options) const {
+        static_cast<void>(unevenness(options));
+        return read_exr(path("out/step.exr"), {"G"});
+    }
+    static void expect_same(const std::vector<float>& found,
+                            const std::vector<float>& expected,
+                            double within) {
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i)
+            EXPECT_NEAR(found[i], expected[i], within * expected[i]) << i;
+    }
+};
+
+TEST_F(CommandMesh, AStepIsWhatItsDepthMapIs) {
+    constexpr double kOfFloats = 2e-5;  // of vertices, some metres off
+    const std::vector<float> by_map = corrected("--depth-map axis");
+    for (const double heading_deg : {0.0, 90.0, 217.0}) {
+        write_place(heading_deg);
+        write_step(heading_deg);
+        EXPECT_LT(unevenness("--nav place.csv --relief step.ply"), kEven) << heading_deg;
+        expect_same(corrected("--nav place.csv --relief step.ply"), by_map, kOfFloats);
+    }
+    write_place(0.0);  // to the east of what is not turned along
+    write_step(90.0);
+    EXPECT_GT(unevenness("--nav place.csv --relief step.ply"), 0.5 * kUneven);
+}
+
+// Level floors under tilted cameras, and floors that are tilted under level ones, are the plane of
+// the navigation: as a mesh by depth, and as a grid of heights by altitude.
+TEST_F(CommandMesh, APlaneIsTheNavigationsPlane) {
+    constexpr double kPitch = 7.0 * std::numbers::pi / 180.0;
+    write_file(path("nav.csv"), "image,altitude_m,pitch_deg,roll_deg\nstep.exr,2.0,7,-3\n");
+    const std::vector<float> by_plane = corrected("--nav nav.csv");
+    write_place(40.0, "7,-3");
+    std::vector<float> heights(64, -90.0F);
+    write_file(
+        path("level.tif"),
+        geotiff_of(heights, {.width = 8, .height = 8, .tie = {4, 4, 0, kEast_m, kNorth_m, 0}}));
+    expect_same(
+        corrected("--nav place.csv --relief level.tif --relief-place altitude"), by_plane, kEven);
+    heights.assign(64, 90.0F);
+    write_file(
+        path("depths.tif"),
+        geotiff_of(heights, {.width = 8, .height = 8, .tie = {4, 4, 0, kEast_m, kNorth_m, 0}}));
+    expect_same(corrected("--nav place.csv --relief depths.tif --relief-axes east-north-down "
+                          "--relief-place altitude"),
+                by_plane,
+                kEven);
+    write_file(path("nav.csv"), "image,altitude_m,pitch_deg,roll_deg\nstep.exr,2.0,7,0\n");
+    const std::vector<float> by_pitch = corrected("--nav nav.csv");
+    // With the bow up by p the floor falls away ahead by tan p.
+    const double fall = 4.0 * std::tan(kPitch);
+    write_ply("slope.ply",
+              90.0,
+              {{-4, -4, 2 - fall}, {4, -4, 2 + fall}, {4, 4, 2 + fall}, {-4, 4, 2 - fall}});
+    write_place(90.0);
+    for (const std::string by : {"depth", "altitude"})
+        expect_same(
+            corrected("--nav place.csv --relief slope.ply --relief-place " + by), by_pitch, kEven);
+}
+
+TEST_F(CommandMesh, IsSaidAndLeftOutOfObservedMaps) {
+    write_place(90.0);
+    write_step(90.0);
+    done(Arguments("correct step.exr --rig rig.toml --gain 1 --format exr -o out --nav place.csv "
+                   "--relief step.ply"),
+         "relief: step.ply, east-north-up, by the navigation's depths");
+    EXPECT_EQ(json_in("out/correction.json").at("settings").at("depth").at("placed_by"), "depth");
+    done(Arguments(
+             "observe step.exr --rig rig.toml --nav place.csv --altitude 2 --relief step.ply -o "
+             "map.exr"),
+         "relief: step.ply");
+    const std::vector<float> counts = read_exr(path("map.exr"), {"count.G"});
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        EXPECT_EQ(counts[i], i % kWidth_px < kWidth_px / 2 ? 1.0F : 0.0F) << i;
+}
+
+// What is beside the mesh takes the navigation's plane, and is marked.
+TEST_F(CommandMesh, BesideTheMeshIsThePlane) {
+    write_place(0.0);
+    write_ply("half.ply", 0.0, {{-3, -3, 2}, {3, -3, 2}, {3, 0, 2}, {-3, 0, 2}});
+    const std::vector<float> by_plane = corrected("--nav nav.csv");
+    expect_same(corrected("--nav place.csv --relief half.ply --edge-px 0"), by_plane, kEven);
+    const DecodedPng mask = decode_png(text_of("out/step.mask.png"));
+    for (std::size_t i = 0; i < by_plane.size(); ++i)
+        EXPECT_EQ((mask.pixels[i] & 32U) != 0, i % kWidth_px >= kWidth_px / 2) << i;
+}
+
+TEST_F(CommandMesh, WhatCannotBeIsRefused) {
+    write_place(0.0);
+    write_step(0.0);
+    write_file(path("far.ply"), text_of("step.ply"));
+    write_file(path("far.csv"),
+               "image,altitude_m,east_m,north_m,heading_deg\nstep.exr,2.0,12,7,0\n");
+    write_file(path("step.txt"), "");
+    const std::string correct = "correct step.exr --rig rig.toml --format exr -o out ";
+    const Cases cases{
+        {Arguments(correct + "--relief step.ply"), "--nav"},
+        {Arguments(correct + "--nav place.csv --relief step.ply --depth-map axis"), "--depth-map"},
+        {Arguments(correct + "--nav place.csv --relief-axes east-north-up"), "--relief"},
+        {Arguments(correct + "--nav nav.csv --relief step.ply"),
+         "nav.csv: found no east_m, north_m, heading_deg of it; needed by --relief"},
+        {Arguments(correct + "--nav far.csv --relief step.ply"),
+         "step.ply: no image looks at it: found cameras at east 12.0 to 12.0 m, north 7.0 to 7.0 "
+         "m, "
+         "and the mesh at east 500297.0 to 500303.0 m"},
+        {Arguments(correct + "--nav place.csv --relief step.txt"), "found the extension '.txt'"},
+        {Arguments("observe step.exr --nav place.csv --altitude 2 --relief step.ply -o m.exr"),
+         "--relief needs --rig"}};
+    for (const auto& [arguments, why] : cases) refused(arguments, why);
+    write_file(path("deep.csv"),
+               fmt::format("image,altitude_m,east_m,north_m,heading_deg,depth_m\n"
+                           "step.exr,2.0,{},{},0,-100\n",
+                           kEast_m,
+                           kNorth_m));
+    refused(Arguments(correct + "--nav deep.csv --relief step.ply"),
+            "allowed: a mesh that has the navigation's sea level");
+}
+
 TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
     write_depths("mm", [](int column, int /*row*/) { return 1000.0 * step_m(column); });
     write_depths("holes", [](int /*column*/, int /*row*/) { return 0.0; });
@@ -259,7 +437,7 @@ TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
         {Arguments(correct + "--depth-map axis --normals floor"), "--normals floor needs --nav"},
         {Arguments(correct), "--rig needs --nav"},
         {Arguments("correct step.exr --map step.exr --depth-map axis --format exr -o out"),
-         "--depth-map need --rig"}};
+         "--relief need --rig"}};
     for (const auto& [arguments, why] : cases) refused(arguments, why);
 }
 

@@ -360,6 +360,21 @@ TEST(NavigationAcfr, BothImagesOfALineHaveTheCamerasPose) {
               "'X angle', roll_deg 'Y angle'; metres, radians; altitude: along the axis");
 }
 
+// The image's top is against the stereo frame's Y, by matrices; with theta 0 a quarter turn before
+// psi.
+TEST(NavigationAcfr, APlaceIsOfTheTop) {
+    const Navigation nav = parsed(kPoses, rig());
+    const Place& first = nav.pose_of("PR_1_LC16.png").place;
+    EXPECT_EQ(first.north_m, -90.1);
+    EXPECT_EQ(first.east_m, -788.1);
+    EXPECT_EQ(first.depth_m, 69.2);
+    constexpr double kOfNumbers = 1e-12;
+    const Eigen::Vector3d top = -turn_by({0.01, 0.02, 1.5}).col(1);
+    EXPECT_NEAR(first.heading_rad, std::atan2(top.y(), top.x()), kOfNumbers);
+    EXPECT_NEAR(
+        nav.pose_of("PR_3_LC16.png").place.heading_rad, 0.7 - 0.5 * std::numbers::pi, kOfNumbers);
+}
+
 TEST(NavigationAcfr, ALineThatIsCutCostsItsOwnImagesAlone) {
     const Navigation nav =
         parsed(std::string(kPoses) +

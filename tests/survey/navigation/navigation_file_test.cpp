@@ -72,6 +72,30 @@ TEST(NavigationFile, OplabsCsv) {
               "[deg]', roll_deg 'roll [deg]'; metres, degrees; altitude: along the axis");
 }
 
+// Where the vehicle was is read where it is asked for; what is no number is no fault of the pose.
+TEST(NavigationFile, PlacesAreReadOnRequest) {
+    EXPECT_TRUE(std::isnan(parsed(kOplab).pose_of("20240309_123456_789.tif").place.east_m));
+    const Navigation nav = parsed(kOplab, {.has_places = true});
+    const Place& place = nav.pose_of("20240309_123456_789.tif").place;
+    EXPECT_EQ(place.north_m, 10.1);
+    EXPECT_EQ(place.east_m, -3.2);
+    EXPECT_EQ(place.depth_m, 61.2);
+    EXPECT_NEAR(place.heading_rad, 181.2 * kDegree, kRounding);
+    EXPECT_TRUE(nav.tells_depth());
+    EXPECT_TRUE(has(words_of(*nav.notes()),
+                    "east_m 'easting [m]', north_m 'northing [m]', heading_deg 'heading [deg]', "
+                    "depth_m 'depth [m]'"));
+    const Navigation own =
+        parsed("image,altitude_m,X,Y,heading_deg\na,2,500000.5,none,90\n",
+               {.columns = {{"east_m", "X"}, {"north_m", "Y"}}, .has_places = true});
+    EXPECT_EQ(own.pose_of("a").place.east_m, 500000.5);
+    EXPECT_TRUE(std::isnan(own.pose_of("a").place.north_m));
+    EXPECT_FALSE(own.tells_depth());
+    EXPECT_TRUE(has(refusal("image,altitude_m,depth [cm]\na,2,6100\n",
+                            {.columns = {{"depth_m", "depth [cm]"}}}),
+                    "the column 'depth [cm]' is in cm; allowed: metres"));
+}
+
 TEST(NavigationFile, BiiglesCsvInAnyLetterCaseAndByOtherNames) {
     const Navigation nav = parsed(
         "filename,taken_at,lng,lat,gps_altitude,distance_to_ground,area,yaw\n"

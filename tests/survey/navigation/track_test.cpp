@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
 
 namespace aphotic::track_test {
@@ -35,6 +36,27 @@ TEST(Track, IsItsPointsAndStraightBetween) {
     EXPECT_NEAR(sled.pitch_rad, 0.0, kRounding);
     EXPECT_NEAR(sled.roll_rad, 0.25, kRounding);
     EXPECT_NEAR(kTrack.at(kNoon_s + 1.5).roll_rad, 0.0, kRounding);
+}
+
+// From 350 to 10 degrees by way of north.
+TEST(Track, PlacesAreStraightBetweenAndHeadingsTheShorterWay) {
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    const Track track({{.time_s = 0.0,
+                        .place = {.east_m = 500000.0,
+                                  .north_m = 10.0,
+                                  .heading_rad = 350.0 * kDegree,
+                                  .depth_m = 60.0}},
+                       {.time_s = 2.0,
+                        .place = {.east_m = 500001.0,
+                                  .north_m = 8.0,
+                                  .heading_rad = 10.0 * kDegree,
+                                  .depth_m = 61.0}}},
+                      kLongestGap_s);
+    const Place place = track.place_at(1.5);
+    EXPECT_EQ(place.east_m, 500000.75);
+    EXPECT_EQ(place.north_m, 8.5);
+    EXPECT_EQ(place.depth_m, 60.75);
+    EXPECT_NEAR(place.heading_rad, 365.0 * kDegree, kRounding);
 }
 
 TEST(Track, GapsAndEndsAreTold) {

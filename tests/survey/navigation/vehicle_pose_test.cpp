@@ -76,6 +76,28 @@ TEST(VehiclePose, ALeverAndATurnByHand) {
                 kRounding);
 }
 
+// Bound east, its camera a metre ahead, half a metre to starboard, 0.2 m lower, and turned by a
+// quarter: that is a metre east, half a metre south, and looks south. Unturned, nothing changes.
+TEST(VehiclePose, APlaceIsTheCamerasByLeverAndHeading) {
+    const Place vehicle{
+        .east_m = 500000.0, .north_m = 100.0, .heading_rad = 90.0 * kDegree, .depth_m = 60.0};
+    const Mounting mounting{.position_m = {1.0, 0.5, 0.2},
+                            .roll_pitch_yaw_rad = {0.0, 0.0, 90.0 * kDegree}};
+    const Place camera = camera_place(vehicle, {2.0, 0.0, 0.0}, mounting);
+    constexpr double kOfUtm_m = 1e-9;
+    EXPECT_NEAR(camera.east_m, 500001.0, kOfUtm_m);
+    EXPECT_NEAR(camera.north_m, 99.5, kOfUtm_m);
+    EXPECT_NEAR(camera.depth_m, 60.2, kOfUtm_m);
+    EXPECT_NEAR(std::abs(camera.heading_rad), 180.0 * kDegree, kRounding);
+    // Bow up by 30 degrees, what is ahead is half of it higher.
+    const Place up =
+        camera_place(vehicle, {2.0, 30.0 * kDegree, 0.0}, {.position_m = {1.0, 0.0, 0.0}});
+    EXPECT_NEAR(up.east_m, 500000.0 + std::cos(30.0 * kDegree), kOfUtm_m);
+    EXPECT_NEAR(up.depth_m, 59.5, kOfUtm_m);
+    EXPECT_EQ(camera_place(vehicle, {2.0, 0.1, 0.2}, {}).heading_rad, vehicle.heading_rad);
+    EXPECT_TRUE(std::isnan(camera_place({}, {2.0, 0.0, 0.0}, mounting).east_m));
+}
+
 // In the world: x north, y east, z down; the floor is z = 0, and the vehicle is turned by matrices
 // that share nothing with the code but the sense of the angles.
 TEST(VehiclePose, TheAxisMeetsTheFloorWhereMatricesSay) {
