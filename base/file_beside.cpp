@@ -21,9 +21,8 @@ fs::path end_of(const fs::path& path) {
     fs::path end = fs::canonical(path, error);
     if (!error) return end;
     const bool dangles = error == std::errc::no_such_file_or_directory && fs::is_symlink(path);
-    throw InputError("{}: cannot be read: {}",
-                     path.string(),
-                     dangles ? "it is a link to what is not there" : error.message());
+    throw InputError(
+        "{}: cannot be read: {}", path.string(), dangles ? "it is a broken link" : error.message());
 }
 
 }  // namespace

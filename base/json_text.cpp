@@ -71,14 +71,14 @@ struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
 nlohmann::json parse_json(std::string_view text, const std::string& what) {
     if (const int depth = depth_of(text); depth > kMostJsonDepth) {
         throw InputError(
-            "{}: found values nested in {} levels; allowed: up to {}", what, depth, kMostJsonDepth);
+            "{}: found values nested {} deep; allowed: up to {}", what, depth, kMostJsonDepth);
     }
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw InputError(what + ": is not JSON");
+    if (json.is_discarded()) throw InputError(what + ": not valid JSON");
     KeysOnce keys;
     nlohmann::json::sax_parse(text, &keys);
     if (!keys.twice.empty())
-        throw InputError("{}: '{}' stands twice in an object", what, excerpt(keys.twice));
+        throw InputError("{}: duplicate key '{}' in an object", what, excerpt(keys.twice));
     return json;
 }
 

@@ -96,10 +96,9 @@ NpyArray read_npy(const std::filesystem::path& path) {
         return is_known && one.descr == descr[1].str();
     });
     if (type == kNumberTypes.end())
-        throw InputError(
-            "{}: found {}; allowed: an array of little-endian real numbers as NumPy saves it",
-            path.string(),
-            is_known ? "numbers of the type " + descr[1].str() : "no such array");
+        throw InputError("{}: found {}; allowed: a NumPy array of little-endian real numbers",
+                         path.string(),
+                         is_known ? "numbers of the type " + descr[1].str() : "no such array");
     NpyArray array;
     const std::string sides = shape[1];
     static const std::regex kNumber("[0-9]+");

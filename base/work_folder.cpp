@@ -82,7 +82,7 @@ FolderLock::FolderLock(const fs::path& folder, FolderUse use)
     if (::flock(descriptor_, operation) == 0 || errno != EWOULDBLOCK) return;
     const std::string holder = holder_of(descriptor_);
     ::close(descriptor_);
-    throw RunError("{}: another aphotic is at work in this folder{}; allowed: one at a time",
+    throw RunError("{}: this folder is in use by another aphotic{}; allowed: one at a time",
                    folder.string(),
                    holder.empty() ? "" : fmt::format(" (process {})", holder));
 }

@@ -162,7 +162,7 @@ void print(const ShownBeam& shown) {
     }
     if (stated_lm) say("  the file states     {:.6g} lm\n", *stated_lm);
     if (fit) {
-        say("  {} sharp cone{} err by {:.1f} % rms:\ncones = [\n",
+        say("  fit of {} sharp cone{}, {:.1f} % rms error:\ncones = [\n",
             fit->cones.size(),
             fit->cones.size() == 1 ? "" : "s",
             100.0 * fit->error);
@@ -189,7 +189,7 @@ void plot(const Beam& beam, const std::string& file) {
                    .x_label = "angle off the axis [degrees]",
                    .y_label = "intensity [1/sr]",
                    .curves = {}};
-    Plot polar{.title = "as thrown, the axis up",
+    Plot polar{.title = "as thrown, axis up",
                .x_label = "intensity times the sine [1/sr]",
                .y_label = "intensity times the cosine [1/sr]",
                .curves = {}};

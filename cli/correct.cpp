@@ -128,7 +128,7 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
 void expect_size_of(const LightAt& light, CameraNumbers& camera) {
     if (!camera.expected) camera.expected.emplace();
     camera.expected->image = light.size;
-    camera.expected->as = "as the map has";
+    camera.expected->as = "like the map";
 }
 
 // What is asked for, and of water that scatters what the model leaves out.

@@ -277,11 +277,11 @@ void write_all(const std::vector<NewTable>& tables) {
 
 void note_what_differs(const SplineFile& found, const std::string& file) {
     for (const std::size_t line : found.anonymous_lines) {
-        warn("{}:{}: passed over a spline without a name", file, line);
+        warn("{}:{}: skipped a spline without a name", file, line);
     }
     for (const SplineSpectrum& spectrum : found.spectra) {
         if (spectrum.is_linear()) continue;
-        warn("{}:{}: {} is a {}: its knots are taken, and joined by straight lines",
+        warn("{}:{}: {} is a {}: its knots are joined by straight lines",
              file,
              spectrum.line,
              spectrum.identifier,

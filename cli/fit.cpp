@@ -137,7 +137,7 @@ void print_confounded(const std::vector<Confounded>& pairs) {
         say("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
     }
     if (shown < pairs.size())
-        say("confounded: {} pairs more, in {}\n", pairs.size() - shown, kFitNumbers);
+        say("confounded: {} more pairs, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
 void print_result(const std::string& title,

@@ -37,7 +37,7 @@ ExitStatus write_quick_look(const GenerateCommandOptions& options) {
     const Rig rig = read_plausible_rig(options.planning.rig_file, options.planning.strict);
     write_text_file(options.quick_look,
                     quick_look_sdl(rig, fs::path(options.planning.rig_file).parent_path()));
-    say("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
+    say("{}: this rig for a quick look with aphotic.inc\n", options.quick_look);
     return kDone;
 }
 

@@ -54,8 +54,8 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
     for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
         if (!fs::exists(notes)) continue;
         throw InputError(
-            "{}: found the notes of a render or trace; allowed: a folder without, as these images "
-            "would replace its own",
+            "{}: found the record of a render or trace; allowed: a folder without one, since these "
+            "images would replace its own",
             notes.string());
     }
 }

@@ -378,7 +378,7 @@ ExitStatus run_lightmap(LightmapCommandOptions options) {
     const std::size_t altitudes = options.altitude_m.size();
     const bool is_folder = altitudes > 1 || !options.export_as.empty();
     if (is_folder && fs::path(options.output).extension() == ".exr") {
-        throw InputError("--output: found {}; allowed: a folder, of what is by altitude",
+        throw InputError("--output: found {}; allowed: a folder, for several altitudes or --export",
                          options.output);
     }
     if (is_folder && !options.preview_file.empty()) {

@@ -72,7 +72,7 @@ void require_extension(CLI::Option& option, const std::string& extension) {
 void refuse_no_name(CLI::Option& option) {
     option.check(
         [](const std::string& text) {
-            return text.empty() ? "found an empty text; allowed: a name" : "";
+            return text.empty() ? "found an empty string; allowed: a name" : "";
         },
         "");
 }
@@ -127,7 +127,7 @@ void require_separate_files(const CLI::App& command) {
                 const bool takes =
                     !is_written(*other) && fs::is_regular_file(file) && takes_place_of(file, named);
                 if (!is_same && !takes) continue;
-                throw InputError("{}: found {}, which {} names too; allowed: a file of its own",
+                throw InputError("{}: found {}, which {} also names; allowed: a different file",
                                  written->get_name(),
                                  file.string(),
                                  other->get_name());

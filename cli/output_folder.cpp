@@ -89,7 +89,7 @@ void require_room(const ResourceNeeds& needs, const fs::path& folder, bool ignor
     const std::string lacking = shortage(needs, free, folder.string());
     if (lacking.empty()) return;
     throw RunError(
-        "{}. Nothing was begun; --ignore-needs begins all the same, for images often compress",
+        "{}. Nothing was started; --ignore-needs starts anyway, since images often compress",
         lacking);
 }
 
@@ -105,10 +105,11 @@ int jobs_that_fit(const ResourceNeeds& needs, int jobs) {
     const std::uint64_t free_bytes = free_memory_bytes();
     const int fitting = jobs_with_memory(needs, free_bytes, jobs);
     if (static_cast<std::uint64_t>(jobs) * needs.job_memory_bytes > free_bytes) {
-        warn("renders {} at a time, for POV-Ray takes up to {} of memory for each, and {} are free",
-             counted(static_cast<std::size_t>(fitting), "frame"),
-             bytes_in_words(needs.job_memory_bytes),
-             bytes_in_words(free_bytes));
+        warn(
+            "renders {} at a time, since POV-Ray takes up to {} of memory for each, and {} is free",
+            counted(static_cast<std::size_t>(fitting), "frame"),
+            bytes_in_words(needs.job_memory_bytes),
+            bytes_in_words(free_bytes));
     }
     return fitting;
 }

@@ -82,8 +82,8 @@ void print(const MadeSurvey& made) {
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
-        "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers an electron\n"
-        "  {}, as instruments tell it {}\n",
+        "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers per electron\n"
+        "  {}, and as instruments measure it {}\n",
         survey.rig.title,
         counted(survey.legs.size(), "image"),
         folder,
@@ -182,7 +182,7 @@ TruthAsked truth_asked(const SurveyCommandOptions& options, const Rig& rig) {
         if (is_asked(kind) && !scene_of(options, rig).empty())
             throw InputError(
                 "--truth: found {} of a POV-Ray scene of your own; allowed with one: depth, poses. "
-                "Without its textures POV-Ray tells ranges alone",
+                "Without its textures POV-Ray gives ranges only",
                 kind);
     }
     return {.depth = is_asked("depth"),

@@ -276,7 +276,7 @@ std::optional<Navigation> navigation_of(const SurveyInput& input,
         throw InputError(
             "--rig needs --nav, for the map depends on where the sled was, or --depth-map");
     if (input.depth.normals == NormalsFrom::Floor)
-        throw InputError("--normals floor needs --nav, which says how the floor lies");
+        throw InputError("--normals floor needs --nav, which gives the floor's orientation");
     return std::nullopt;
 }
 
@@ -363,7 +363,7 @@ RunWatch terminal_watch(bool strict) {
 void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder) {
     say("  sRGB in {}: exposure {:.4g}, ", (folder / kSrgbFolder).string(), encoding.exposure);
     if (encoding.camera) {
-        say("colours within {:.1f} CIELAB units in the mean of {}, {:.1f} at most ({})\n",
+        say("colours within {:.1f} CIELAB units on average over {}, {:.1f} at most ({})\n",
             encoding.camera->mean_delta_e(),
             counted(encoding.camera->surfaces.size(), "surface"),
             encoding.camera->worst().delta_e,

@@ -35,8 +35,8 @@ struct TraceCommandOptions {
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
-        "{}: found the manifest of a render; allowed: a folder without one, as the traced images "
-        "would replace the rendered ones",
+        "{}: found the manifest of a render; allowed: a folder without one, since the traced "
+        "images would replace the rendered ones",
         manifest_path(folder).string());
 }
 

@@ -83,7 +83,7 @@ void print_model(const ModelCheck& model) {
         return fmt::format(
             "{:.4f} +- {:.4f}", of_model / truth.mean, truth.standard_error / truth.mean);
     };
-    say("  The reference over light of all orders, {} paths a place:\n", model.paths);
+    say("  The reference over light of all orders, {} paths per place:\n", model.paths);
     say("  {:>3}  {:>6}  {:>14}  {:>6}  {:>18}  {:>18}  {:>18}\n",
         "",
         "nm",
@@ -217,7 +217,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         ProgressLine line;
         report.model =
             check_model(planned.rig, options.monte_carlo, options.jobs, [&](double share) {
-                line.show("following light of all orders", share);
+                line.show("tracing light of all orders", share);
             });
     }
     if (rendering.manifest.scene) report.scene_file = rendering.manifest.scene->file;

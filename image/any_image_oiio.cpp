@@ -302,7 +302,7 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
     std::string cause = watched.end();
     if (!cause.empty()) return cause;
     if (is_whole) return "";
-    return fault.empty() ? "the library does not say why" : fault;
+    return fault.empty() ? "the library gives no reason" : fault;
 }
 
 extern "C" void aphotic_write_any_image(const std::filesystem::path& file,

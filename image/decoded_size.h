@@ -54,7 +54,7 @@ inline void require_block(std::uint64_t width, std::uint64_t rows, std::uint64_t
     constexpr std::uint64_t kMost_bytes = 256 * kMebi;
     const std::uint64_t bytes = product(product(width, rows), pixel_bytes);
     if (bytes <= kMost_bytes) return;
-    throw InputError("found {} rows of {} MiB together, decoded at once; allowed: {} MiB",
+    throw InputError("found {} rows decoded at once, {} MiB in all; allowed: {} MiB",
                      rows,
                      bytes / kMebi,
                      kMost_bytes / kMebi);
@@ -91,7 +91,7 @@ inline void require_file_size(std::uint64_t file_bytes,
                          kMostBeside_bytes / kMebi);
     }
     if (product(samples, sizeof(float)) > kAlways_bytes && image_bytes / kMostTimes > file_bytes) {
-        throw InputError("found {} bytes in the file for {} MiB of pixels; needed: 1/{} and more",
+        throw InputError("found {} bytes in the file for {} MiB of pixels; needed: 1/{} or more",
                          file_bytes,
                          image_bytes / kMebi,
                          kMostTimes);

@@ -76,7 +76,7 @@ ExrReader::ExrReader(const fs::path& file) : path_(file) {
     try {
         file_ = std::make_unique<File>(file);
     } catch (const std::exception& error) {
-        fail(path_, "is no readable OpenEXR image", error);
+        fail(path_, "not a readable OpenEXR image", error);
     }
 }
 

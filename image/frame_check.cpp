@@ -33,7 +33,7 @@ void check_samples(const fs::path& file,
 void check_size(
     const fs::path& file, int found_width_px, int found_height_px, int width_px, int height_px) {
     if (found_width_px == width_px && found_height_px == height_px) return;
-    throw RunError("{}: found {} x {} pixels; wanted {} x {}",
+    throw RunError("{}: found {} x {} pixels; allowed: {} x {}",
                    file.string(),
                    found_width_px,
                    found_height_px,

@@ -199,7 +199,7 @@ static std::string tagged(const std::filesystem::path& file,
         if (is_srgb) image->exifData()["Exif.Photo.ColorSpace"] = std::uint16_t{1};
         image->writeMetadata();
         Exiv2::BasicIo& made = image->io();
-        if (made.open() != 0) return "there are no bytes";
+        if (made.open() != 0) return "no data";
         CheckedFile out(file);
         out.write(made.mmap(), made.size(), 0);
         out.close();

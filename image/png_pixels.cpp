@@ -137,7 +137,7 @@ std::vector<float> png_pixels(const std::filesystem::path& file, const PngPart& 
     PngReader png(file);
     if (std::cmp_not_equal(png.width(), part.width_px) ||
         std::cmp_not_equal(png.height(), part.height_px) || png.channels() != part.channels) {
-        throw InputError("it was changed while it was read");
+        throw InputError("it changed while being read");
     }
     const std::size_t row_samples = size_of(part.width_px) * size_of(part.end - part.first);
     std::vector<float> pixels(row_samples * size_of(part.height_px));

@@ -60,7 +60,7 @@ double bright_value(const CameraImage& image, const Channels& scale) {
 
 void require(cairo_status_t status, int width_px, int height_px) {
     if (status == CAIRO_STATUS_SUCCESS) return;
-    throw RunError("no picture of {} x {} pixels can be made: {}",
+    throw RunError("cannot make a picture of {} x {} pixels: {}",
                    width_px,
                    height_px,
                    cairo_status_to_string(status));

@@ -26,7 +26,7 @@ using aphotic::size_of;
 }
 
 [[noreturn]] void refuse_samples(const std::filesystem::path& file) {
-    refuse_raw(file, "found samples of another kind than whole numbers");
+    refuse_raw(file, "found samples that are not whole numbers");
 }
 
 void require_success(int status, const std::filesystem::path& file) {
@@ -53,7 +53,7 @@ std::string pattern_of(LibRaw& raw, const std::filesystem::path& file) {
     }
     static const std::array<std::string, 4> kPatterns{"RGGB", "BGGR", "GRBG", "GBRG"};
     if (std::ranges::find(kPatterns, pattern) != kPatterns.end()) return pattern;
-    refuse_raw(file, fmt::format("found a mosaic of other sites; allowed: RGGB, BGGR, GRBG, GBRG"));
+    refuse_raw(file, fmt::format("found another mosaic pattern; allowed: RGGB, BGGR, GRBG, GBRG"));
 }
 
 // Of every site of a mosaic, or of every channel: common, by colour, and by place in a pattern.

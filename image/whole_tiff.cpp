@@ -91,7 +91,7 @@ class Directory {
     void require_no_error() const {
         if (tiff_ && said_.error.empty()) return;
         const std::string why = said_.error.empty() ? "it has no directory" : said_.error;
-        throw InputError("it is not whole: {}", why);
+        throw InputError("it is incomplete: {}", why);
     }
     [[nodiscard]] bool has_false_counts() const { return said_.has_false_counts; }
 
@@ -187,15 +187,14 @@ void require_whole_tiff(const std::filesystem::path& file) {
         const std::uint64_t bytes = tiff.bytes(i);
         tiff.require_no_error();
         if (offset == 0 || bytes == 0) {
-            throw InputError("it is not whole: strip or tile {} of {} is empty", i + 1, parts);
+            throw InputError("it is incomplete: strip or tile {} of {} is empty", i + 1, parts);
         }
         if (bytes <= tiff.size() && offset <= tiff.size() - bytes) continue;
         const std::uint64_t end = offset + bytes;
-        if (end < offset) throw InputError("it points beyond its end");
-        throw InputError("it is cut short: found {} bytes of {} and more", tiff.size(), end);
+        if (end < offset) throw InputError("it points past its end");
+        throw InputError("it is truncated: found {} bytes of at least {}", tiff.size(), end);
     }
-    if (tiff.has_false_counts())
-        throw InputError("it is not whole: the bytes of its strip are missing or too few");
+    if (tiff.has_false_counts()) throw InputError("it is incomplete: its strip has too few bytes");
 }
 
 void require_sound_streams(const std::filesystem::path& file) {

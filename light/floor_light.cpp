@@ -28,8 +28,8 @@ LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     const LampGrid grid = lamp_grid(rig, strobe, 0.0);
     if (static_cast<double>(grid.across) * grid.along > kMostLamps) {
         throw InputError(
-            "strobe '{}': found an emitter that takes {} x {} lamps so low over the "
-            "floor; allowed: up to {} of them",
+            "strobe '{}': found an emitter that needs {} x {} lamps this close to the floor; "
+            "allowed: up to {}",
             strobe.name,
             grid.across,
             grid.along,

@@ -19,7 +19,7 @@ using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcRele
 // Of one thread: images are spread over threads, not their meshes.
 const Device& device() {
     static const Device kDevice(rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
-    if (!kDevice) throw RunError("Embree, which casts shadows, cannot be started");
+    if (!kDevice) throw RunError("cannot start Embree, which computes shadows");
     return kDevice;
 }
 

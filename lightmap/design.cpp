@@ -175,8 +175,8 @@ class DesignSearch {
           start_(light.of(space.places_at(space.start()))) {
         if (start_.evenness <= 0.0) {
             throw InputError(
-                "found pixels without light, or without floor, in a pose of the "
-                "envelope; allowed: a start that lights the whole image in all");
+                "found pixels without light, or without floor, in a pose of the envelope; allowed: "
+                "a start that lights the whole image in all poses");
         }
         archive_.take(space.start(), start_);
     }

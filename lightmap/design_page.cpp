@@ -63,7 +63,7 @@ PageTable figures(const DesignRequest& request, const DesignResult& result) {
     add(fmt::format("coverage, share of pixels over {} of the brightest", plain(request.level)),
         start.coverage,
         best.coverage);
-    add("signal to noise of the worst pixel, the start’s being 1",
+    add("signal to noise of the worst pixel (start = 1)",
         1.0,
         best.signal_to_noise / start.signal_to_noise);
     return table;
@@ -190,8 +190,8 @@ std::vector<PagePart> front(const DesignResult& result) {
                                  dots(x, y, kFrontTone) + dots(start_x, start_y, kStartTone) +
                                  dots(best_x, best_y, kBestTone);
     return {
-        "Designs of which none is better in both: more even light, or more of it. --keep chooses "
-        "among them.",
+        "Designs that no other beats in both: more even light, or more of it. --keep chooses among "
+        "them.",
         PageLegend{dot_key(kFrontTone, "front"),
                    dot_key(kStartTone, "start"),
                    dot_key(kBestTone, "design")},
@@ -270,7 +270,7 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
                                 "position (m)",
                                 "direction at start",
                                 "direction",
-                                "power of the start’s"}};
+                                "power (start = 1)"}};
     const auto vector = [](const Eigen::Vector3d& v) {
         return fmt::format("{:.3f}, {:.3f}, {:.3f}", v.x(), v.y(), v.z());
     };
@@ -286,9 +286,8 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
                        was.power > 0.0 ? fmt::format("{:.3f}", is.power / was.power) : "none"}});
     }
     return {std::move(table),
-            "From above, forward up: the start in red, the design in green, each with a line to "
-            "where it points, as long as half the altitude; dashed, what the camera sees of the "
-            "floor.",
+            "From above, forward up: the start in red, the design in green, each with a line along "
+            "its aim, half the altitude long; dashed, what the camera sees of the floor.",
             PagePlot{plan_of(rig, result)}};
 }
 
@@ -322,7 +321,7 @@ std::string design_html(const Rig& rig, const DesignRequest& request, const Desi
          .is_good = result.is_better,
          .headline = headline(result),
          .said = {fmt::format(
-             "The worst of {}; {}, {} looked at.",
+             "The worst of {}; {}, {} evaluated.",
              grouped_count(result.best.poses.size(), "pose"),
              grouped_count(result.numbers, "free number"),
              grouped_count(static_cast<std::size_t>(result.evaluations), "design"))},

@@ -232,8 +232,7 @@ void DesignSpace::set_powers() {
         const double flux = strobe.power * flux_per_power_[s];
         if (flux <= 0.0) {
             throw InputError(
-                "strobe.{}.power: found a strobe without light; allowed: one that "
-                "has some to share",
+                "strobe.{}.power: found a strobe without light; allowed: one with light to share",
                 strobe.name);
         }
         shared_flux_ += flux;
@@ -243,8 +242,8 @@ void DesignSpace::set_powers() {
     }
     if (count == 1) {
         throw InputError(
-            "--vary: found the power of one strobe; allowed: of two or more, which "
-            "share the light that they have together");
+            "--vary: found the power of one strobe; allowed: the power of two or more, which share "
+            "their total light");
     }
     if (count > 0) least_share_ = std::min(kLeastFluxShare, least / most);
 }

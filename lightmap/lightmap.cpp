@@ -31,7 +31,7 @@ namespace aphotic {
 namespace {
 
 void require_bare_floor(const Rig& rig) {
-    constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
+    constexpr auto kAllowed = "allowed: the bare floor, since a lightmap shows nothing else";
     if (!rig.objects.empty()) {
         throw InputError("found the object '{}'; {}", rig.objects.front().name, kAllowed);
     }
@@ -66,7 +66,7 @@ void require_float_scale(const Rig& rig) {
             throw InputError(fmt::format(
                 "strobe '{}', {}: found up to {:.3g} of lamp spectrum times reflectance times "
                 "response, and {:.3g} of power times beam; allowed: each, and their product, from "
-                "{:g} to {:g}, for maps are of 32-bit floats",
+                "{:g} to {:g}, since maps hold 32-bit floats",
                 strobe.name,
                 kChannelNames.at(static_cast<std::size_t>(c)),
                 signal,
@@ -183,8 +183,7 @@ void LightmapMaker::place(const std::vector<StrobePlace>& by_strobe) {
 void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
     throw InputError(
-        fmt::format("{}: the image sees paths {} "
-                    "than the tables serve; allowed: from {} to {} m",
+        fmt::format("{}: the image sees paths {} than the tables cover; allowed: from {} to {} m",
                     in_words(sled),
                     is_before ? "shorter" : "longer",
                     at_least(paths_.shortest_m, 6),

@@ -110,7 +110,7 @@ void require_openexr(const PovRay& povray, std::string_view why) {
 
 void require_format(const PovRay& povray, FrameFormat format) {
     if (format == FrameFormat::Exr)
-        require_openexr(povray, "in which frames are written; --frame-format png16 does without");
+        require_openexr(povray, "which frames need; --frame-format png16 does without");
 }
 
 std::string path_option(std::string_view option, const fs::path& path) {
@@ -118,7 +118,7 @@ std::string path_option(std::string_view option, const fs::path& path) {
         path.string(), [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; });
     if (!is_readable) {
         throw InputError(
-            "{}: found a path with letters beyond ASCII or a quotation mark; allowed: none, for "
+            "{}: found a path with non-ASCII letters or a quotation mark; allowed: none, since "
             "POV-Ray cannot read them",
             path.string());
     }

@@ -109,7 +109,7 @@ class Survey {
         }
         if (!is_plain_name(scene_.file.filename().string())) {
             refuse(
-                "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, blanks, "
+                "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, spaces, "
                 "and signs other than \" and \\");
         }
         scene_.files_digest = digest_of_scene(scene_.file);
@@ -362,13 +362,12 @@ class Survey {
                 asked.has_camera ? "a second camera" : "no camera of aphotic.inc");
         }
         if (const int others = asked.all_lights - asked.lights; others != 0) {
-            refuse(
-                "found {} no strobe of aphotic.inc; allowed: none, for such light has no spectrum",
-                others == 1 ? "1 light source that is"
-                            : fmt::format("{} light sources that are", others));
+            refuse("found {} not from aphotic.inc; allowed: none, since such light has no spectrum",
+                   others == 1 ? "1 light source that is"
+                               : fmt::format("{} light sources that are", others));
         }
         if (asked.lights > kMostLightsInMedia && !rig_.water.is_clear()) {
-            refuse("found {} cones of light; allowed: {}, which is what POV-Ray takes in water",
+            refuse("found {} cones of light; allowed: {}, POV-Ray's limit in water",
                    asked.lights,
                    kMostLightsInMedia);
         }
@@ -404,7 +403,7 @@ class Survey {
         const std::array<std::pair<bool, const char*>, 3> found{
             {{asked.has_radiosity, "radiosity"},
              {asked.has_photons, "photons"},
-             {asked.has_media, "media of the scene's own"}}};
+             {asked.has_media, "the scene's own media"}}};
         for (const auto& [is_there, what] : found) {
             if (!is_there) continue;
             if (!options_.unchecked) {
@@ -437,8 +436,9 @@ class Survey {
         if (std::ranges::any_of(through_water.green, is_lit) ||
             std::ranges::any_of(through_water.blue, is_lit)) {
             refuse(
-                "found light with all strobes off; allowed: none, for such light has no spectrum. "
-                "Is there a finish with emission, a light_group, or a medium that glows?");
+                "found light with all strobes off; allowed: none, since such light has no "
+                "spectrum. Is there a finish with emission, a light_group, or a medium that "
+                "glows?");
         }
         if (has_water_ && std::ranges::any_of(bare.red, is_lit)) {
             require_water_in_view(through_water, bare);
@@ -465,7 +465,7 @@ class Survey {
             const auto pixel = static_cast<int>(least - plane->begin());
             refuse(
                 "found light of {:.3g}, where the brightest is {:.3g}, at column {}, row {} of {} "
-                "x {}; allowed: 0 and more. Is there a colour under 0?",
+                "x {}; allowed: 0 or more. Is there a colour below 0?",
                 *least,
                 *std::ranges::max_element(*plane),
                 pixel % width_px_,
@@ -610,12 +610,14 @@ class Survey {
 
     // Of what has no promise anyway it voids the promise too.
     void require_no_dry_light(std::size_t pixels) {
-        const std::string what = fmt::format(
-            "light that no water dims, in {} of {} pixels", pixels, width_px_ * height_px_);
+        const std::string what =
+            fmt::format("light that passes through no water, in {} of {} pixels",
+                        pixels,
+                        width_px_ * height_px_);
         if (scene_.no_promise.empty()) {
             refuse(
-                "found {}; allowed: water on its way. Are camera and strobes inside an object that "
-                "is not hollow?",
+                "found {}; allowed: water on its path. Are camera and strobes inside an object "
+                "that is not hollow?",
                 what);
         }
         scene_.no_promise.push_back(what);
@@ -658,7 +660,7 @@ UserScene survey_scene(const PovRay& povray,
                        const Rig& rig,
                        const fs::path& scene_file,
                        const SurveyOptions& options) {
-    require_openexr(povray, "in which a scene of your own is measured before it is planned");
+    require_openexr(povray, "which the probe of a scene of your own needs");
     return Survey(povray, rig, scene_file, options).run();
 }
 

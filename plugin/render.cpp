@@ -165,8 +165,8 @@ OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     const fs::path note = scene_note(folder);
     if (!fs::exists(note) || read_text_file(note) != digest)
         throw InputError(
-            "{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
-            "generate`",
+            "{}: found scenes made from an older {}; allowed: scenes from the current one, by "
+            "`aphotic generate`",
             folder.string(),
             file);
     return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
@@ -283,8 +283,8 @@ std::size_t join_frames(const fs::path& folder) {
         if (!has_frame(manifest)) manifest.povray_version = made->povray_version;
         if (has_frame(*made) && made->povray_version != manifest.povray_version)
             throw InputError(
-                "{}: found frames of POV-Ray {}; allowed: of {}, as the others. Remove it, and "
-                "render its frames anew",
+                "{}: found frames by POV-Ray {}; allowed: by {}, like the others. Remove it and "
+                "render its frames again",
                 share.string(),
                 made->povray_version,
                 manifest.povray_version);

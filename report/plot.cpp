@@ -140,8 +140,8 @@ std::string plots_svg(std::span<const Plot> panels) {
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file) {
     if (file.extension() != ".svg") {
         throw InputError(
-            "{}: found a plot file that ends in '{}'; allowed: .svg, of which a "
-            "browser or rsvg-convert makes a PNG",
+            "{}: found a plot file that ends in '{}'; allowed: .svg (a browser or rsvg-convert "
+            "makes it a PNG)",
             file.string(),
             file.extension().string());
     }

@@ -125,7 +125,7 @@ std::optional<std::string> doubt_of_turn(double degrees) {
         std::abs(eighths - std::round(eighths)) * 0.5 * kHalfPi > kRounding) {
         return std::nullopt;
     }
-    return fmt::format("found {:g}, a part of pi; {:.4g} if that is in radians",
+    return fmt::format("found {:g}, a fraction of pi; {:.4g} if that is in radians",
                        degrees,
                        degrees * kDegreesPerRadian);
 }
@@ -284,8 +284,8 @@ void Doubter::judge_view(const toml::table& root) {
     }
     const std::string path = "camera." + key;
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
-        fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a view of {:.4g} "
-                    "degrees from corner to corner; usual: {:g} to {:g}{}",
+        fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a field of view "
+                    "of {:.4g} degrees from corner to corner; usual: {:g} to {:g}{}",
                     1e3 * f_m,
                     1e6 * pitch_m,
                     view * kDegreesPerRadian,
@@ -301,8 +301,8 @@ void Doubter::judge_levels(const toml::table& root) {
     if (*readout.black_level_dn <= kMostShare * *readout.white_level_dn) return;
     const std::string path = "camera.black_level_dn";
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
-        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g} (light needs the "
-                    "room between them)",
+        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g} (the signal needs the "
+                    "range between them)",
                     *readout.black_level_dn,
                     *readout.white_level_dn));
 }
@@ -318,9 +318,10 @@ void Doubter::judge_tilts() {
     for (const auto& [place, tilt] : tilts_) {
         if (!is_tilted(std::pair(place, tilt))) continue;
         add(place,
-            fmt::format("found {:g}; usual: 0, or some degrees to 90; {:.4g} if that is in radians",
-                        tilt,
-                        tilt * kDegreesPerRadian));
+            fmt::format(
+                "found {:g}; usual: 0, or a few degrees to 90; {:.4g} if that is in radians",
+                tilt,
+                tilt * kDegreesPerRadian));
     }
 }
 
@@ -411,8 +412,7 @@ void Doubter::judge_absorption(const toml::table& root) {
         fix = fmt::format("; {:.4g}/m if the table is in {}", per_m * unit.factor, unit.name);
     }
     add({.key = "water.absorption", .pattern = "water.absorption", .line = source_line(node)},
-        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g} and more, which pure water has, to "
-                    "{:.3g}{}",
+        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g}, which pure water has, to {:.3g}{}",
                     per_m,
                     lambda_nm,
                     pure_per_m,

@@ -77,7 +77,7 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Beam& beam) {
 std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
     std::vector<Omission> left_out;
     if (rig.water.is_clear()) {
-        left_out.push_back({"the water's medium", "clear water takes no light"});
+        left_out.push_back({"the water's medium", "clear water attenuates nothing"});
     }
     if (!rig.camera.port) {
         left_out.push_back({"a port", "none is given: the pupil is in the water"});

@@ -142,9 +142,8 @@ void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) 
     const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
     if (lights <= most) return;
     throw InputError(
-        "strobes: {} lights, one for every cone of every lamp; allowed: {}, "
-        "which is what POV-Ray takes in {}. Fewer lamps stand for an "
-        "emitter with --emitter-lamps",
+        "strobes: found {} lights, one for every cone of every lamp; allowed: {}, POV-Ray's limit "
+        "in {}. --emitter-lamps models an emitter with fewer lamps",
         lights,
         most,
         rig.water.is_clear() ? "clear water" : "water");
@@ -174,8 +173,8 @@ double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
             least_m = std::min(least_m, apart_m);
             if (apart_m > kOnePlace_m) continue;
             throw InputError(
-                "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is no "
-                "sum of cones in water; allowed: lamps a micrometre apart",
+                "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is not a sum of "
+                "cones in water; allowed: lamps at least a micrometre apart",
                 a.strobe->name,
                 b.strobe->name,
                 a.strobe->beam.name);
@@ -201,8 +200,8 @@ void require_port(const Camera& camera) {
     const double clearance_m = least_clearance_m(*camera.port);
     if (clearance_m < kLeastClearance_m) {
         throw InputError(fmt::format(
-            "camera.port: found {:.3g} mm of {}; allowed for a render: {} mm and more, for POV-Ray "
-            "takes no notice of surfaces that are nearer",
+            "camera.port: found {:.3g} mm of {}; allowed for a render: {} mm or more, since "
+            "POV-Ray ignores surfaces that are closer",
             clearance_m * 1e3,
             clearance_m < camera.port->thickness_m ? "air between the pupil and the glass"
                                                    : "glass",
@@ -211,11 +210,11 @@ void require_port(const Camera& camera) {
     if (camera.port->dome || is_across_axis(*camera.port)) return;
     const double widest_deg = widest_off_normal_rad(camera) * 180.0 / std::numbers::pi;
     if (widest_deg > kWidest_deg) {
-        throw InputError(fmt::format(
-            "camera.port.normal: found a view that reaches {:.1f} degrees from it; allowed for a "
-            "render: up to {}, as the port has to be wider than any ray",
-            widest_deg,
-            kWidest_deg));
+        throw InputError(
+            fmt::format("camera.port.normal: found a view that reaches {:.1f} degrees from it; "
+                        "allowed for a render: up to {}, since the port must be wider than any ray",
+                        widest_deg,
+                        kWidest_deg));
     }
 }
 
@@ -617,8 +616,11 @@ namespace {
 std::string antialias_ini(int rays) {
     if (rays == 0) return "; One ray through each pixel's centre.\nAntialias=off\n";
     return fmt::format(
-        "; {} x {} rays to each pixel beside the one through its centre.\n"
-        "Antialias=on\nSampling_Method=1\nAntialias_Threshold=0.0\nAntialias_Depth={}\n"
+        "; {} x {} rays per pixel besides the one through its centre.\n"
+        "Antialias=on\n"
+        "Sampling_Method=1\n"
+        "Antialias_Threshold=0.0\n"
+        "Antialias_Depth={}\n"
         "Jitter=off\n",
         rays,
         rays,

@@ -84,7 +84,7 @@ void share_frames(const Rig& rig,
     plan.quality = with_veil(rule.quality, plan.veil_error);
     if (!std::isfinite(plan.promise())) {
         throw InputError(
-            "found weights that show a channel light it is blind to, so that nothing can be "
+            "found weights that give a channel light to which it is blind, so nothing can be "
             "promised; allowed: fitted wavelengths, without --bands");
     }
 }
@@ -144,7 +144,7 @@ void plan_to_tolerance(const Rig& rig,
          offered = at_least(std::max(promise, kNext * offered))) {
         promise = best_promise(offered, rig, fitter, request, plan);
         if (promise > offered) continue;
-        throw InputError("tolerance: found {}; allowed: {}, which {} wavelengths keep{}",
+        throw InputError("tolerance: found {}; allowed: {}, which {} wavelengths achieve{}",
                          request.tolerance,
                          offered,
                          plan.wavelengths.size(),
@@ -153,8 +153,8 @@ void plan_to_tolerance(const Rig& rig,
                              : "");
     }
     throw InputError(
-        "tolerance: found {}, and no plan for this rig keeps any up to 1: the best found promises "
-        "{:.3g}; allowed: --fitted, which takes what so many wavelengths keep",
+        "tolerance: found {}, but no plan for this rig achieves even 1: the best found promises "
+        "{:.3g}; allowed: --fitted, which accepts whatever error N wavelengths have",
         request.tolerance,
         least);
 }
@@ -170,8 +170,8 @@ void plan_to_tolerance(const Rig& rig,
     const double view_rad = 2.0 * std::atan(half_m / camera.focal_length_m);
     if (view_rad <= kMostView_rad) throw InputError(why);
     throw InputError(
-        "{}; or another camera.focal_length_mm: {:.6g} makes a view of {:.1f} degrees from corner "
-        "to corner, and no lens without distortion has over 135",
+        "{}; or another camera.focal_length_mm: {:.6g} gives a field of view of {:.1f} degrees "
+        "from corner to corner, and no lens without distortion exceeds 135",
         why,
         kMillimetresPerMetre * camera.focal_length_m,
         view_rad / kRadiansPerDegree);
@@ -253,7 +253,7 @@ RenderPlan plan_direct_light(const Rig& rig, const PlanRequest& request) {
     const int least_px = least_width_px(request.scene.antialias > 0);
     if (rig.camera.lens && rig.camera.width_px < least_px) {
         throw InputError(
-            "camera: found {} columns with a calibrated lens; allowed: {} and more, since POV-Ray "
+            "camera: found {} columns with a calibrated lens; allowed: {} or more, since POV-Ray "
             "finds no rays for fewer",
             rig.camera.width_px,
             least_px);

@@ -120,7 +120,7 @@ int jobs_with_memory(const ResourceNeeds& needs, std::uint64_t free_bytes, int j
 std::string shortage(const ResourceNeeds& needs, const FreeDisk& free, const std::string& folder) {
     const auto lack = [](std::uint64_t needed_bytes, std::uint64_t free_bytes, const auto& where) {
         if (needed_bytes <= free_bytes) return std::string();
-        return fmt::format("needs up to {} in {}, {} are free",
+        return fmt::format("needs up to {} in {}, {} free",
                            bytes_in_words(needed_bytes),
                            where,
                            bytes_in_words(free_bytes));

@@ -47,9 +47,9 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
         for (const PlannedWavelength& w : wavelengths) {
             if (!counts(w) || peak_log2(w) >= held) continue;
             throw InputError(
-                "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
-                "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "
-                "for nothing",
+                "found light of at most {:.1e} at {} nm, fainter than frames can hold, which "
+                "counts in {} with a weight of {:.1e}; allowed: wavelengths that frames can hold, "
+                "or of no weight",
                 w.radiance_bound,
                 w.lambda_nm,
                 kChannelNames[c],
@@ -162,8 +162,8 @@ namespace {
 void require_no_bracket(const std::filesystem::path& folder) {
     if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
     throw InputError(
-        "{}: found a '[' in the folder's path; allowed: none, for POV-Ray cannot read its settings "
-        "there",
+        "{}: found a '[' in the folder's path; allowed: none, since POV-Ray cannot read its "
+        "settings there",
         folder.string());
 }
 
@@ -172,8 +172,8 @@ void require_place_in_settings(const std::string& path) {
     const auto is_plain = [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; };
     if (std::ranges::all_of(path, is_plain)) return;
     throw InputError(
-        "{}: found a path with letters beyond ASCII, a quotation mark or a line's end; "
-        "allowed: none, for POV-Ray cannot read them",
+        "{}: found a path with non-ASCII letters, a quotation mark or a line break; allowed: none, "
+        "since POV-Ray cannot read them",
         path);
 }
 

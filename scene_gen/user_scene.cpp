@@ -69,11 +69,9 @@ void require_known(const std::string& name, const Rig& rig) {
     std::ranges::sort(known);
     known.erase(std::unique(known.begin(), known.end()), known.end());
     const std::string nearest = nearest_name(name, known);
-    throw InputError(
-        "is no known reflectance{}; allowed: {}, or a .csv file beside the "
-        "scene",
-        nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
-        fmt::join(known, ", "));
+    throw InputError("is not a known reflectance{}; allowed: {}, or a .csv file beside the scene",
+                     nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
+                     fmt::join(known, ", "));
 }
 
 }  // namespace
@@ -169,10 +167,11 @@ bool opens_to_write(const fs::path& scene_file) {
 void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
     if (digest_of_scene(scene_file) == files_digest) return;
     throw RunError(
-        "{}: it, or a file that it names, was changed while it was worked on; run the "
-        "same command again, for the scene as it is now{}",
+        "{}: this scene, or a file that it names, changed during the run; run the same command "
+        "again with the current scene{}",
         scene_file.string(),
-        opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : "");
+        opens_to_write(scene_file) ? ". Files that it writes itself must be the same each time"
+                                   : "");
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

@@ -27,8 +27,8 @@ void require_wavelengths(WavelengthRange range, std::span<const double> lambda_n
         const bool increases = j == 0 || lambda_nm[j] >= lambda_nm[j - 1] + kLeastStepNm;
         if (increases && range.contains(lambda_nm[j])) continue;
         throw InputError(
-            "wavelengths: found {} nm in place {}; allowed: increasing wavelengths from {} to {} "
-            "nm",
+            "wavelengths: found {} nm at position {}; allowed: increasing wavelengths from {} to "
+            "{} nm",
             lambda_nm[j],
             j + 1,
             range.first_nm,

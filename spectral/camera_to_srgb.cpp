@@ -108,7 +108,7 @@ std::vector<ShownSurface> shown(const Sensor& sensor,
         white += weights.back();
     });
     if (!(white.minCoeff() > 0.0)) {
-        throw InputError("a channel sees none of the light; allowed: light in every channel");
+        throw InputError("a channel receives none of the light; allowed: light in every channel");
     }
     std::vector<ShownSurface> all;
     for (const Spectrum& surface : surfaces()) {

@@ -21,7 +21,7 @@ std::vector<std::string> all_names() {
     const std::vector<std::string> names = all_names();
     const std::string nearest = nearest_name(name, names);
     throw InputError(
-        "no built-in table is called '{}'{}; allowed: {}, or a file whose name ends in .csv",
+        "no built-in table is named '{}'{}; allowed: {}, or a file whose name ends in .csv",
         name,
         nearest.empty() ? "" : "; did you mean '" + nearest + "'?",
         fmt::join(names, ", "));

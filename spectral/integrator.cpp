@@ -159,8 +159,7 @@ void require_finite(const fs::path& folder, const Manifest& manifest, const Bloc
     const std::size_t channel = index / block.plane;
     const std::size_t pixel = index % block.plane;
     throw RunError(
-        "{}: {} comes out as {} at column {}, row {}; allowed: weights and exposures that keep it "
-        "finite",
+        "{}: {} is {} at column {}, row {}; allowed: weights and exposures that keep it finite",
         manifest_path(folder).string(),
         channel < kChannels
             ? std::string(kChannelNames[channel])
@@ -174,10 +173,10 @@ void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
     for (const ManifestFrame& frame : manifest.frames) {
         const fs::path file = image_path(folder, frame);
         if (!fs::exists(file)) {
-            throw RunError("{}: this frame is missing; render it first", file.string());
+            throw RunError("{}: the frame is missing; render it first", file.string());
         }
         if (frame.done() && sha256_of_file(file) != frame.image_sha256) {
-            throw RunError("{}: is not the image that the manifest notes", file.string());
+            throw RunError("{}: is not the image recorded in the manifest", file.string());
         }
     }
 }
@@ -216,7 +215,7 @@ std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifes
     check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
     std::vector<float> factors = reader.planes(kFactor);
     if (sha256_of_floats(factors) != manifest.camera->vignetting_sha256)
-        throw RunError("{}: is not the vignetting that the manifest notes", file.string());
+        throw RunError("{}: is not the vignetting recorded in the manifest", file.string());
     return factors;
 }
 
@@ -236,11 +235,11 @@ class VeilReader {
         : channels_(veil_channels(manifest)) {
         if (!manifest.veil || manifest.veil->povray) return;
         if (manifest.veil->sha256.empty() || !fs::exists(file)) {
-            throw RunError("{}: the veil is missing; `aphotic render` makes it of its frames",
+            throw RunError("{}: the veil is missing; `aphotic render` makes it from its frames",
                            file.string());
         }
         if (sha256_of_file(file) != manifest.veil->sha256)
-            throw RunError("{}: is not the veil that the manifest notes", file.string());
+            throw RunError("{}: is not the veil recorded in the manifest", file.string());
         channels_.resize(kChannels + planes);
         reader_.emplace(file);
         check_size(

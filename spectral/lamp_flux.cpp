@@ -43,8 +43,8 @@ double luminous_flux_lm(const Spectrum& lamp) {
                                     integral({&curves[1], 1}, V.range(), efficiency);
     if (unseen > kMostUnseen) {
         throw InputError(
-            "{}: found a range of {:g} to {:g} nm, which leaves out {:.1f} % of what the eye "
-            "sees; allowed: up to {:.1f} %",
+            "{}: found a range of {:g} to {:g} nm, which leaves out {:.1f} % of the luminous flux; "
+            "allowed: up to {:.1f} %",
             lamp.name(),
             lamp.range().first_nm,
             lamp.range().last_nm,

@@ -83,17 +83,17 @@ class Writer {
 template <typename T>
 constexpr std::string_view kWords = "a list of numbers";
 template <>
-constexpr std::string_view kWords<std::string> = "a text";
+constexpr std::string_view kWords<std::string> = "a string";
 template <>
 constexpr std::string_view kWords<double> = "a number";
 template <>
 constexpr std::string_view kWords<bool> = "true or false";
 template <>
-constexpr std::string_view kWords<std::vector<std::string>> = "a list of texts";
+constexpr std::string_view kWords<std::vector<std::string>> = "a list of strings";
 template <>
 constexpr std::string_view kWords<std::array<double, kChannels>> = "three numbers";
 template <>
-constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of texts";
+constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of strings";
 
 // Reads the fields of one JSON object, and says which one is wrong.
 class Reader {
@@ -196,7 +196,7 @@ void fields(const Visit& visit, Frame& frame, std::set<std::string>& names) {
     visit("name", frame.name);
     visit.require(
         "name", "letters, digits, '_', '-' and '.', not first", is_plain_name(frame.name));
-    visit.require("name", "a name that no other frame has", names.insert(frame.name).second);
+    visit.require("name", "a unique name", names.insert(frame.name).second);
     visit("scene_sha256", frame.scene_sha256);
     visit("image_sha256", frame.image_sha256);
 }
@@ -218,7 +218,7 @@ void fields(const Visit& visit, Scene& scene) {
     visit.require("shortest_path_m", "a number over 0", scene.shortest_path_m > 0.0);
     visit("longest_path_m", scene.longest_path_m);
     visit.require("longest_path_m",
-                  "a number not under shortest_path_m",
+                  "a number no smaller than shortest_path_m",
                   scene.longest_path_m >= scene.shortest_path_m);
 }
 
@@ -339,7 +339,7 @@ void fields(const Visit& visit, Whole& manifest) {
     Before before{.frames = static_cast<int>(manifest.frames.size())};
     visit.list("wavelengths", manifest.wavelengths, before);
     visit.require("wavelengths", "at least one", !manifest.wavelengths.empty());
-    visit.require("frames", "as many as the lobes of the veil ask for", has_veil_frames(manifest));
+    visit.require("frames", "as many as the lobes of the veil require", has_veil_frames(manifest));
 }
 
 }  // namespace
@@ -413,7 +413,7 @@ Manifest read_manifest(const fs::path& folder) {
     Reader(json, file.string())(kChecksum, noted);
     if (noted != checksum_of(json)) {
         throw InputError(
-            "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
+            "{}: {}: does not match the rest, which was changed after it was written; allowed: a "
             "manifest as aphotic wrote it",
             file.string(),
             kChecksum);

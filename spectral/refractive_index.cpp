@@ -85,7 +85,7 @@ Glass builtin_glass(std::string_view name) {
     const std::vector<std::string> names = builtin_names("glass");
     if (std::find(names.begin(), names.end(), name) == names.end()) {
         throw InputError(
-            "no built-in glass is called '{}'; allowed: {}", name, fmt::join(names, ", "));
+            "no built-in glass is named '{}'; allowed: {}", name, fmt::join(names, ", "));
     }
     return Glass(builtin_table(name));
 }

@@ -36,12 +36,12 @@ std::string gap_text(WavelengthRange covered, WavelengthRange range) {
 // What to write in the rig instead: the covered part of range, else all that is covered.
 std::string remedy_text(WavelengthRange common, WavelengthRange range) {
     if (!(common.first_nm < common.last_nm)) {
-        return "no range_nm would do, for these curves have no wavelengths in common";
+        return "no range_nm works, since these curves have no wavelengths in common";
     }
     WavelengthRange both{std::max(common.first_nm, range.first_nm),
                          std::min(common.last_nm, range.last_nm)};
     if (!(both.first_nm < both.last_nm)) both = common;
-    return fmt::format("range_nm = [{}, {}] would do", both.first_nm, both.last_nm);
+    return fmt::format("range_nm = [{}, {}] works", both.first_nm, both.last_nm);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ Spectrum::Spectrum(std::string name,
         throw InputError("{}: found {} knots; a curve needs 2 or more", name_, lambda_nm_.size());
     }
     if (!all_finite(lambda_nm_) || !all_finite(values_)) {
-        throw InputError("{}: holds a number that is not finite", name_);
+        throw InputError("{}: found a number that is not finite", name_);
     }
     const auto fall =
         std::adjacent_find(lambda_nm_.begin(), lambda_nm_.end(), std::greater_equal<>());

@@ -75,7 +75,7 @@ std::string without_comments(const std::string& file, std::string_view whole) {
         if (end == std::string::npos) {
             fail_at_line(file,
                          static_cast<std::size_t>(1 + std::ranges::count(text.substr(0, at), '\n')),
-                         "the {} that begins here never ends",
+                         "the {} that begins here is not terminated",
                          is_text ? "text" : "comment");
         }
         for (at += is_text ? 1 : 0; at < end; ++at) {
@@ -154,7 +154,7 @@ class Parser {
 
     [[noreturn]] void fail_for_want_of_spectra() const {
         const std::string fitting =
-            only_ == "*" ? "" : fmt::format(", with a NAME that fits '{}'", only_);
+            only_ == "*" ? "" : fmt::format(", with a NAME that matches '{}'", only_);
         throw InputError(
             "{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or #declare NAME = "
             "array[36] {{ ... }}{}",
@@ -232,7 +232,7 @@ class Parser {
             std::ranges::adjacent_find(knots, std::ranges::equal_to(), &SplineKnot::lambda_nm);
         if (twice == knots.end()) return;
         fail(std::next(twice)->line,
-             "found the wavelength {} again, first in line {}; allowed: once",
+             "found a duplicate wavelength {}, first on line {}; allowed: once",
              twice->lambda_nm,
              twice->line);
     }
@@ -243,7 +243,7 @@ class Parser {
         for (const SplineSpectrum& other : found_.spectra) {
             if (spline_table_name(other.identifier) != table) continue;
             fail(spectrum.line,
-                 "found a second spectrum for {}, the first is {} in line {}; allowed: one",
+                 "found a second spectrum for {}, the first is {} on line {}; allowed: one",
                  table,
                  other.identifier,
                  other.line);
@@ -342,12 +342,10 @@ void check_values(const std::string& file, const SplineSpectrum& spectrum, Curve
 
 std::string obtained_text(const SplineSpectrum& spectrum) {
     if (spectrum.form == "array[36]") {
-        return "the values of an array[36], taken to stand at 380 to 730 nm by 10 nm, as in "
-               "SpectralRender";
+        return "the values of an array[36], taken at 380 to 730 nm by 10 nm, as in SpectralRender";
     }
     std::string text = fmt::format("the knots of a {}", spectrum.form);
-    if (!spectrum.is_linear())
-        text += ", here joined by straight lines, which POV-Ray's curve is not";
+    if (!spectrum.is_linear()) text += ", joined here by straight lines, unlike POV-Ray's curve";
     return text;
 }
 

@@ -102,7 +102,7 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
                 excerpt(column));
         }
         if (!seen.insert(column).second) {
-            fail_at_line(table.name, line, "the column '{}' stands twice", excerpt(column));
+            fail_at_line(table.name, line, "duplicate column '{}'", excerpt(column));
         }
     }
 }
@@ -218,7 +218,7 @@ void check_wavelengths(const Table& table) {
             fail_at_line(
                 table.name,
                 row.line,
-                "wavelength_nm: found {}; allowed: above {}, for wavelengths must increase",
+                "wavelength_nm: found {}; allowed: above {}, since wavelengths must increase",
                 lambda_nm,
                 last_nm);
         }

@@ -93,7 +93,7 @@ double least_signal(const NoiseLimit& limit, double veil) {
 }
 
 CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& correction) {
-    require_size(raw, map.width_px, map.height_px, "as the map has");
+    require_size(raw, map.width_px, map.height_px, "like the map");
     require_finite(raw.samples, raw.width_px, "the image");
     const std::size_t pixels = raw.pixels();
     CorrectedImage result{.image = std::move(raw), .doubts = std::vector<std::uint8_t>(pixels)};
@@ -160,7 +160,7 @@ PerChannel middle_quotient(const RawImage& raw,
                            const Lightmap& map,
                            const SensorLevels& levels,
                            double share) {
-    require_size(raw, map.width_px, map.height_px, "as the map has");
+    require_size(raw, map.width_px, map.height_px, "like the map");
     require_finite(raw.samples, raw.width_px, "the image");
     std::array<std::vector<float>, kChannels> quotients;
     std::array<float, kChannels> least{};

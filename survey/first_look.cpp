@@ -165,7 +165,7 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
             whys[i] = error.what();  // it is said of the image when its turn comes, if one does
         }
         const std::scoped_lock lock(mutex);
-        watch.progress("looking at the survey",
+        watch.progress("examining the survey",
                        static_cast<double>(++count) / static_cast<double>(choices.size()));
     });
     SurveyLook result{.count = choices.size()};
@@ -182,10 +182,9 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
 }
 
 std::string SurveyLook::none_can_be(std::string_view done) const {
-    return count == 1
-               ? fmt::format("the only image looked at cannot be {}; {}", done, first_why)
-               : fmt::format(
-                     "none of the {} images looked at can be {}; {}", count, done, first_why);
+    return count == 1 ? fmt::format("the only image examined cannot be {}; {}", done, first_why)
+                      : fmt::format(
+                            "none of the {} images examined can be {}; {}", count, done, first_why);
 }
 
 std::vector<Suspicion> suspicions_of(const std::optional<Navigation>& navigation) {

@@ -51,7 +51,7 @@ std::vector<PagePart> patterns(const Blocks& blocks, const ComparedImages& image
     ValueRange range;
     range.include(blocks.image);
     range.include(blocks.reference);
-    if (range.is_empty()) return {"No sample of both was observed."};
+    if (range.is_empty()) return {"No sample was observed in both."};
     const auto figure = [&](const std::vector<double>& values,
                             std::string words,
                             std::string caption) {
@@ -177,7 +177,7 @@ PageList not_compared(const ComparedImages& images) {
     };
     add("Only in " + named(images.image), images.only_in_image);
     add("Only in " + named(images.reference), images.only_in_reference);
-    add("Left aside", images.left_aside);
+    add("Not compared", images.left_aside);
     return items;
 }
 
@@ -185,13 +185,12 @@ PageSection numbers(const ComparedImages& images) {
     PageSection made{
         .id = "numbers",
         .heading = "Errors",
-        .parts = error_rule(
-            images.scaled ? "the image’s sample, divided by its channel’s scale"
-                          : "the image’s sample",
-            "the reference’s sample",
-            fmt::format("what counts as black, {} of the reference’s largest sample: under it a "
-                        "difference is measured against it",
-                        scientific(images.black)))};
+        .parts = error_rule(images.scaled ? "the image’s sample, divided by its channel’s scale"
+                                          : "the image’s sample",
+                            "the reference’s sample",
+                            fmt::format("what counts as black, {} of the reference’s largest "
+                                        "sample: below it, errors are relative to it",
+                                        scientific(images.black)))};
     made.parts.emplace_back(table(images));
     if (PageList left = not_compared(images); !left.empty()) {
         made.parts.emplace_back(PageHeading{"Channels not compared"});
@@ -219,7 +218,7 @@ std::string comparison_html(const ComparedImages& images) {
                                       images.are_within() ? "within" : "not within",
                                       scientific(images.channels.front().comparison.bound),
                                       named(images.reference),
-                                      images.scaled ? ", but for its scale" : ""),
+                                      images.scaled ? ", apart from its scale" : ""),
               .sections = {numbers(images)}};
     if (images.unpaired() > 0) {
         page.said.push_back(fmt::format("But {} without a partner in the other image.",

@@ -282,10 +282,9 @@ Page page_of(const Study& study) {
                  .parts = {table_of(study),
                            "Errors are e = (a − b) / max(|b|, b₀): a a pixel’s signal, b the "
                            "reference’s, b₀ 10⁻⁸ of the channel’s brightest, in the worst channel "
-                           "and off the edges of beams, shadows and objects, but for the column "
-                           "of edges. Time is POV-Ray’s and the integration’s. On the Pareto "
-                           "front are the settings that no other beats in both time and largest "
-                           "error.",
+                           "and off the edges of beams, shadows and objects, except in the column "
+                           "of edges. Time is POV-Ray’s and the integration’s. A setting is on the "
+                           "Pareto front if no other beats it in both time and largest error.",
                            "Rig: SHA-256 " + study.rig_sha256}}}};
 }
 

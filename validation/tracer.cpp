@@ -161,9 +161,8 @@ EmitterLamps Tracer::lamps_of(std::size_t s) const {
                              .along = along_side(options_.lamps_along, strobe.emitter->along_m)};
     if (static_cast<double>(lamps.across) * lamps.along > kMostLamps) {
         throw InputError(
-            "strobe '{}': its emitter takes {} x {} lamps to trace; "
-            "allowed: {:.0f}. It is large for its distance to the floor or to an "
-            "object, or for its water",
+            "strobe '{}': its emitter needs {} x {} lamps to trace; allowed: {:.0f}. It is too "
+            "large for its distance to the floor or an object, or for its water",
             strobe.name,
             lamps.across,
             lamps.along,

@@ -58,7 +58,7 @@ std::vector<FileNumber> grid_of(const Table& table,
         if (node.line > 0) {
             fail_at_line(table.name,
                          row.line,
-                         fmt::format("found a second row of {}; allowed: one, as in line {}",
+                         fmt::format("found a second row of {}, first on line {}; allowed: one",
                                      place(theta, phi),
                                      node.line));
         }
@@ -69,8 +69,7 @@ std::vector<FileNumber> grid_of(const Table& table,
         fail_at_line(
             table.name,
             table.rows.back().line,
-            fmt::format("found no row of {}; allowed: one for each theta_deg and each "
-                        "phi_deg",
+            fmt::format("found no row for {}; allowed: one for each theta_deg and phi_deg",
                         place(thetas[i % thetas.size()].value, phis[i / thetas.size()].value)));
     }
     return grid;
@@ -90,16 +89,16 @@ void unfold(PhotometricFile& photometry,
     if (first != 0.0 || (last != 360.0 && !closes_evenly(phis))) {
         fail_at_line(file,
                      phis.back().line,
-                     fmt::format("phi_deg: found {} to {}; allowed: 0 to 360, of which 360 may be "
-                                 "missing after even steps, or 0 alone",
+                     fmt::format("phi_deg: found {} to {}; allowed: 0 to 360 (360 may be omitted "
+                                 "where steps are even), or 0 alone",
                                  first,
                                  last));
     }
     if (last == 360.0 && planes.back().intensity != planes.front().intensity) {
         fail_at_line(file,
                      phis.back().line,
-                     "found other intensities at phi_deg 360 than at 0; allowed: the same, for it "
-                     "is one direction");
+                     "found intensities at phi_deg 360 that differ from those at 0; allowed: the "
+                     "same, since it is one direction");
     }
     set_turn(photometry.table, std::move(planes));
 }

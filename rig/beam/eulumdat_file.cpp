@@ -68,7 +68,7 @@ class ValueLines {
             fail_at_line(file_,
                          line_,
                          fmt::format("found {} after the last intensity; allowed: as many as Isym, "
-                                     "Mc and Ng ask for",
+                                     "Mc and Ng require",
                                      shown_word(word)));
         }
     }
@@ -107,10 +107,8 @@ StoredPlanes stored_planes(std::size_t symmetry, std::size_t planes) {
 // The angles that a symmetry asks for are there.
 void check_plane(const std::string& file, const FileNumber& angle, double wanted_deg) {
     if (angle.value == wanted_deg) return;
-    fail_number(file,
-                angle,
-                "a C angle",
-                fmt::format("{} degrees in this place, by Isym and Mc", wanted_deg));
+    fail_number(
+        file, angle, "a C angle", fmt::format("{} degrees here, by Isym and Mc", wanted_deg));
 }
 
 void check_symmetry_angles(const std::string& file,
@@ -151,15 +149,14 @@ double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
         fail_number(file,
                     sets,
                     "sets of lamps",
-                    "1; of several, leave in the one that is fitted, for intensities are per "
-                    "1000 lm of it");
+                    "1; of several, keep the one that is installed, since intensities are per 1000 "
+                    "lm of it");
     }
     const FileNumber count = lines.number("the number of lamps");
     photometry.is_absolute = count.value < 0.0;
     static_cast<void>(count_of(file,
                                {std::abs(count.value), count.line},
-                               "the number of lamps, whose sign is minus where photometry is "
-                               "absolute",
+                               "the number of lamps, negative for absolute photometry",
                                1,
                                kMostLampsOfSet));
     take_label(photometry, "LAMP", lines.next("the type of lamps"));
@@ -267,7 +264,7 @@ PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view by
         fail_number(file_name,
                     turn.back(),
                     "a C angle",
-                    "below 360 degrees, or the intensities of 0 there again");
+                    "below 360 degrees, or the intensities of 0 repeated");
     }
     std::vector<TurnPlane> given;
     for (std::size_t i = 0; i < columns.size(); ++i)

@@ -68,7 +68,7 @@ class NumberReader {
         fail_at_line(file_,
                      line_,
                      fmt::format("found {} after the last number; allowed: as many numbers as the "
-                                 "counts of angles ask for",
+                                 "counts of angles require",
                                  shown_word(word)));
     }
 
@@ -156,7 +156,7 @@ void pass_over_constant_tilt(NumberReader& numbers) {
         fail_number(file,
                     factor,
                     "the factor of a tilt (TILT)",
-                    "1, for a lamp whose light changes as it is tilted is not modelled");
+                    "1; lamps whose light changes with tilt are not modelled");
     }
 }
 
@@ -232,8 +232,8 @@ void unfold_turn(BeamTable& table,
         if (columns.back() != columns.front()) {
             fail_at_line(file,
                          horizontal.back().line,
-                         "found other candela at 360 degrees than at 0; allowed: the same, for it "
-                         "is one plane");
+                         "found candela at 360 degrees that differ from those at 0; allowed: the "
+                         "same, since it is one plane");
         }
         return set_turn(table, planes);
     }
@@ -241,11 +241,11 @@ void unfold_turn(BeamTable& table,
     fail_at_line(
         file,
         horizontal.front().line,
-        fmt::format("horizontal angles: found {} to {} degrees; allowed for type C: 0 "
-                    "alone, 0 to 90, 0 to 180, 90 to 270, or 0 to 360, of which 360 may be "
-                    "missing after even steps",
-                    first,
-                    last));
+        fmt::format(
+            "horizontal angles: found {} to {} degrees; allowed for type C: 0 alone, 0 to 90, 0 to "
+            "180, 90 to 270, or 0 to 360 (360 may be omitted where steps are even)",
+            first,
+            last));
 }
 
 // -x of each angle x that is not 0, then the angles.
@@ -394,7 +394,7 @@ void check_sides(const BeamTable& table, const std::string& file_name) {
     if (table.vertical_rad.front() != 0.0 && table.horizontal_rad.front() != 0.0) return;
     throw InputError(
         "{}: found a table of type A or B that begins at 0; allowed in .ies: one that begins below "
-        "0, for what begins there is half of a symmetric one",
+        "0, since one that begins at 0 is half of a symmetric table",
         file_name);
 }
 
@@ -434,8 +434,8 @@ PhotometricFile parse_ies(const std::string& file_name, std::string_view bytes) 
     } else if (word != "none") {
         fail_at_line(file_name,
                      lines.line(),
-                     fmt::format("found TILT={}, a table of how the lamp's light changes as it is "
-                                 "tilted; allowed: TILT=NONE, or INCLUDE with factors of 1",
+                     fmt::format("found TILT={}, a table of the lamp's light over tilt; allowed: "
+                                 "TILT=NONE, or INCLUDE with factors of 1",
                                  shown_word(*tilt_word)));
     }
     const IesHeader header = next_header(numbers, edition, photometry);

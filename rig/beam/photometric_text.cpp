@@ -120,7 +120,7 @@ double intensity_of(const std::string& file,
         fail_number(file,
                     number,
                     what,
-                    fmt::format("up to {:.3g}, for the file's factors multiply it by {:.3g}",
+                    fmt::format("up to {:.3g}, since the file's factors multiply it by {:.3g}",
                                 std::numeric_limits<double>::max() / factor,
                                 factor));
     }
@@ -154,7 +154,7 @@ void check_angles(const std::string& file,
         }
         if (angle.value < next_deg) {
             fail_number(
-                file, angle, what, fmt::format("angles that rise, here {} or more", next_deg));
+                file, angle, what, fmt::format("increasing angles, here {} or more", next_deg));
         }
         next_deg = angle.value + kLeastAngleStep_deg;
     }

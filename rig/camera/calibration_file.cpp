@@ -67,7 +67,8 @@ CameraCalibration read_kalibr_calibration(const CalibrationKeys& keys) {
     const std::vector<std::string> cameras = cameras_of(keys);
     if (cameras.size() > 1) {
         keys.fail(cameras[1],
-                  fmt::format("found beside {}; allowed: one camera, that of the rig", cameras[0]));
+                  fmt::format("found together with {}; allowed: one camera, that of the rig",
+                              cameras[0]));
     }
     const CalibrationKeys camera = keys.map(cameras.front());
     CameraCalibration made;
@@ -145,7 +146,7 @@ void require_text(const std::string& file_name, std::string_view text) {
     if (is_cameras_bin(text)) {
         throw InputError(
             "{}: found COLMAP's cameras.bin, which is binary; allowed: its cameras.txt, which "
-            "COLMAP makes of it: colmap model_converter --input_path MODEL --output_path TEXT "
+            "COLMAP writes with: colmap model_converter --input_path MODEL --output_path TEXT "
             "--output_type TXT",
             file_name);
     }
@@ -153,7 +154,7 @@ void require_text(const std::string& file_name, std::string_view text) {
     if (kind.empty() && text.find('\0') == std::string_view::npos) return;
     throw InputError("{}: found {}; allowed, as text: {}",
                      file_name,
-                     kind.empty() ? "zero bytes, which no text has" : kind,
+                     kind.empty() ? "zero bytes" : kind,
                      kKnownCalibrations);
 }
 

@@ -21,7 +21,7 @@ Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
     const std::optional<Vector3d> direction = direction_at(lens, point_px);
     if (!direction) {
         throw InputError(
-            "the lens's formula does not hold at column {}, row {}", point_px.x(), point_px.y());
+            "the lens model is not valid at column {}, row {}", point_px.x(), point_px.y());
     }
     return {-direction->y(), direction->x(), direction->z()};
 }

@@ -148,8 +148,8 @@ void require_to_hold(const LensModel& lens, int width_px, int height_px) {
             const std::optional<Vector3d> direction = direction_at(lens, point_px);
             if (direction && std::acos(std::min(1.0, direction->z())) < most_rad) continue;
             throw InputError(
-                "the lens's formula holds to {:.2f} degrees off the axis, which the image exceeds "
-                "at column {:.0f}, row {:.0f}; allowed: a calibration that holds all over the "
+                "the lens model is valid to {:.2f} degrees off the axis, which the image exceeds "
+                "at column {:.0f}, row {:.0f}; allowed: a calibration that is valid over the whole "
                 "image, within 89.9 degrees",
                 most_rad * kDegreesPerRadian,
                 point_px.x(),

@@ -33,7 +33,8 @@ std::string model_of(const CalibrationKeys& keys) {
     }
     if (keys.number_or("fisheye_model", 0.0) != 0.0) {
         if (!model.empty() && model != "fisheye")
-            keys.fail("fisheye_model", "found beside distortion_model; allowed: one of them");
+            keys.fail("fisheye_model",
+                      "found together with distortion_model; allowed: one of them");
         model = "fisheye";
     }
     return model;

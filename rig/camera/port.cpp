@@ -46,7 +46,7 @@ WaterRay ray_through_tilted(const PortWindow& port,
                             double glass_index,
                             double water_index) {
     const double towards = in_air.dot(port.normal);
-    if (towards <= 0.0) throw InputError("a ray of the image misses the port, which looks away");
+    if (towards <= 0.0) throw InputError("a ray of the image misses the port, which faces away");
     const Vector3d in_glass = refracted(in_air, port.normal, 1.0, glass_index);
     return {.origin_m = port.distance_m / towards * in_air +
                         port.thickness_m / in_glass.dot(port.normal) * in_glass,

@@ -42,7 +42,7 @@ double factor(const TabulatedVignetting& table, const Camera& camera, double col
     const std::vector<double>& angles_rad = table.angles_rad;
     if (angle_rad > angles_rad.back()) {
         throw InputError(
-            "the table ends at {:.4g} degrees, and the image sees {:.4g} at column {}, row {}; "
+            "the table ends at {:.4g} degrees, but the image reaches {:.4g} at column {}, row {}; "
             "allowed: a table that reaches as far",
             angles_rad.back() * kDegreesPerRadian,
             angle_rad * kDegreesPerRadian,

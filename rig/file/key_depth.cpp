@@ -40,12 +40,10 @@ void require_shallow_keys(std::string_view toml, const std::string& file_name) {
         at = c == '#' ? toml.find('\n', at) : at + 1;
         if (kBetweenKeys.find(c) != std::string_view::npos) parts = 1;
         if (c != '.' || ++parts <= kMostKeyParts) continue;
-        throw InputError(
-            "{0}:{1}: found a key of more than {2} parts with dots between "
-            "them; allowed: up to {2}",
-            file_name,
-            1 + std::ranges::count(toml.substr(0, at), '\n'),
-            kMostKeyParts);
+        throw InputError("{0}:{1}: found a dotted key of more than {2} parts; allowed: up to {2}",
+                         file_name,
+                         1 + std::ranges::count(toml.substr(0, at), '\n'),
+                         kMostKeyParts);
     }
 }
 

@@ -112,7 +112,7 @@ Faces read_lines(const std::string& text,
             const std::size_t corners = polygon.corners.size();
             if (corners != values.size() || corners < 3 || corners > kMostCorners) {
                 refuse(fmt::format(
-                    "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
+                    "f and 3 to {} of the {} vertices above it", kMostCorners, vertices));
             }
             faces.triangles += corners - 2;
             if (faces.triangles <= kMostTriangles) faces.polygons.push_back(std::move(polygon));
@@ -177,8 +177,8 @@ Triangle checked_triangle(const Mesh& mesh,
     };
     if (has_area(at(0), at(1), at(2))) return {corners[0], corners[1], corners[2]};
     throw InputError(
-        "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
-        "1; allowed: three corners that do not lie on one line",
+        "{}: found a triangle without area, with vertices {}, {} and {} (counted from 1); allowed: "
+        "three corners not on one line",
         file_name,
         corners[0] + 1,
         corners[1] + 1,
@@ -200,7 +200,7 @@ Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vect
         if (triangles.empty()) {
             throw InputError(
                 "{}:{}: found a polygon that cannot be cut into triangles from one of its corners; "
-                "allowed: one with a corner that sees all others, or triangles in its place",
+                "allowed: one with a corner that sees all others, or triangles instead",
                 file_name,
                 line);
         }

@@ -89,9 +89,8 @@ constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
 const std::string kOneKindOfBeam =
-    "found beside another kind of beam; allowed: one of cones, fwhm_deg, table, or diffuser_mm "
-    "with "
-    "its lens";
+    "found together with another kind of beam; allowed: one of cones, fwhm_deg, table, or "
+    "diffuser_mm with its lens";
 // An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
@@ -165,8 +164,9 @@ PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrate
     for (const std::string_view key :
          {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
         if (section.has(key))
-            section.fail_at(key,
-                            "found beside a calibration that tells the port; allowed: glass alone");
+            section.fail_at(
+                key,
+                "found together with a calibration that describes the port; allowed: glass alone");
     }
     const auto& [distance_m, thickness_m, normal, dome] = calibrated;
     PortWindow port{.distance_m = distance_m,
@@ -198,8 +198,7 @@ Sensor read_response_table(Section response, RigFiles& files) {
 Sensor read_response(Section& camera, RigFiles& files) {
     const std::string allowed =
         "a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or \"quantum\"), "
-        "or "
-        "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono camera without "
+        "or { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, for a mono camera without "
         "filters";
     if (camera.required("response", allowed).is_table()) {
         return read_response_table(camera.section("response", allowed), files);
@@ -236,10 +235,10 @@ std::array<int, 2> read_size(Section& section,
     }
     const std::array size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
     if (calibration && size != std::array{calibration->width_px, calibration->height_px}) {
-        section.found_but("resolution",
-                          fmt::format("[{}, {}], that of the calibration",
-                                      calibration->width_px,
-                                      calibration->height_px));
+        section.found_but(
+            "resolution",
+            fmt::format(
+                "[{}, {}], the calibration's", calibration->width_px, calibration->height_px));
     }
     return size;
 }
@@ -335,8 +334,8 @@ Readout read_readout(Section& camera, bool is_mono) {
     readout.bayer = camera.word("bayer", {"RGGB", "BGGR", "GRBG", "GBRG", "mono"});
     if ((readout.bayer == "mono") != is_mono) {
         camera.found_but("bayer",
-                         is_mono ? "\"mono\", as the response is of one channel"
-                                 : "a pattern of colours, as the response is of three channels");
+                         is_mono ? "\"mono\", since the response has one channel"
+                                 : "a colour pattern, since the response has three channels");
     }
     return readout;
 }
@@ -497,13 +496,12 @@ Beam read_beam(Section section, RigFiles& files, std::string name, const Water& 
         }
     }
     if (!section.has("cones")) {
-        refuse_beside({"weights"}, "found for a beam without cones; allowed: for cones");
+        refuse_beside({"weights"}, "found for a beam without cones; allowed: with cones");
     }
     if (beam.cones.empty()) {
         beam.turn_rad = section.number_or("turn_deg", kTurnDeg, 0.0) * kRadiansPerDegree;
     } else {
-        refuse_beside({"turn_deg"},
-                      "found for a beam that is round; allowed: for table and diffuser_mm");
+        refuse_beside({"turn_deg"}, "found for a round beam; allowed: with table or diffuser_mm");
     }
     if (section.has("measured_in") && section.word("measured_in", {"water", "air"}) == "air") {
         beam.window = read_window(section, water);
@@ -522,7 +520,7 @@ Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
         if (tilt_rad == 0.0) return Eigen::Vector3d::UnitZ();
         aim.found_but(
             "toward",
-            "direction = [x, y, z] in place of aim, since this strobe stands on the camera's axis");
+            "direction = [x, y, z] instead of aim, since this strobe is on the camera's axis");
     }
     return std::cos(tilt_rad) * Eigen::Vector3d::UnitZ() + std::sin(tilt_rad) * inward.normalized();
 }
@@ -555,7 +553,8 @@ double read_power(Section& strobe, const Spectrum& spectrum) {
         if (!kind.empty()) {
             strobe.fail_at(
                 key,
-                fmt::format("found beside {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
+                fmt::format(
+                    "found together with {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
         }
         kind = key;
     }
@@ -567,7 +566,7 @@ double read_power(Section& strobe, const Spectrum& spectrum) {
     if (!(of_table > 0.0)) {
         strobe.fail_at(kind,
                        fmt::format("found with a spectrum that has {}; allowed: one that has some",
-                                   is_luminous ? "no light that the eye sees" : "no light"));
+                                   is_luminous ? "no visible light" : "no light"));
     }
     return value / of_table;
 }
@@ -610,9 +609,9 @@ Box read_box(Section& object) {
     const Eigen::Vector3d a(from_m.data());
     const Eigen::Vector3d b(to_m.data());
     if ((a - b).cwiseAbs().minCoeff() < kLeastSideM) {
-        object.found_but("to_m",
-                         fmt::format("a corner at least {} m from that of from_m along every axis",
-                                     kLeastSideM));
+        object.found_but(
+            "to_m",
+            fmt::format("a corner at least {} m from from_m along every axis", kLeastSideM));
     }
     return {.least_m = a.cwiseMin(b), .most_m = a.cwiseMax(b)};
 }
@@ -653,12 +652,11 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
     for (const Strobe& strobe : strobes) {
         const double away_m = distance_m(shape, strobe.position_m);
         if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
-        throw InputError(
-            fmt::format("found strobe '{}' inside the object or {} m off it; allowed: at "
-                        "least {} m off",
-                        strobe.name,
-                        at_most(away_m),
-                        kLeastDistance_m));
+        throw InputError(fmt::format(
+            "found strobe '{}' inside the object or {} m from it; allowed: at least {} m",
+            strobe.name,
+            at_most(away_m),
+            kLeastDistance_m));
     }
 }
 
@@ -687,8 +685,7 @@ std::vector<Object> read_objects(Section& top,
     if (!top.has("object")) return objects;
     for (Section& section : top.sections("object", "one or more tables [[object]]")) {
         objects.push_back(read_object(section, files, strobes));
-        if (!names.insert(objects.back().name).second)
-            section.found_but("name", "a name that no other object has");
+        if (!names.insert(objects.back().name).second) section.found_but("name", "a unique name");
     }
     return objects;
 }
@@ -741,24 +738,23 @@ std::vector<Strobe> read_strobes(Section& top,
     std::size_t cones = 0;
     for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
         strobes.push_back(read_strobe(section, files, beams, sled));
-        if (!names.insert(strobes.back().name).second)
-            section.found_but("name", "a name that no other strobe has");
+        if (!names.insert(strobes.back().name).second) section.found_but("name", "a unique name");
         if (water.scatters() && strobes.back().position_m.norm() < kLeastDistance_m) {
             section.found_but("position_m",
                               fmt::format("in water that scatters, a point at least {} m from the "
-                                          "camera's pupil, for the veil has no end there",
+                                          "camera's pupil, since the veil is infinite there",
                                           kLeastDistance_m));
         }
         cones += strobes.back().beam.cones.size();
         if (cones <= kMostCones) continue;
         section.found_but("beam",
-                          fmt::format("up to {} cones of all strobes together", kMostCones));
+                          fmt::format("up to {} cones in all strobes together", kMostCones));
     }
     return strobes;
 }
 
 Rig read_all(Section top, RigFiles files, std::string toml) {
-    std::string title = top.text_or("title", "a text in quotes", "");
+    std::string title = top.text_or("title", "a string in quotes", "");
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
     Camera camera = read_camera(top.section("camera", "a table [camera]"), files, mounting);

@@ -101,7 +101,7 @@ class BaselineRun : public Corrector {
         const float white = taken.levels.white * static_cast<float>(taken.exposure);
         if (std::isfinite(white) && white > 0.0F) return white;
         throw InputError(
-            "--white-level: found {} over the black level; allowed: over 0, or --format exr",
+            "--white-level: found {} above the black level; allowed: above 0, or --format exr",
             white);
     }
 
@@ -135,7 +135,7 @@ class BaselineRun : public Corrector {
                               .height_px = image.height_px,
                               .mosaic = image.mosaic};
                 }
-                require_like(image, first_, "as the first image");
+                require_like(image, first_, "like the first image");
                 const double height_m = altitude_m(survey_.files[i]);
                 if (taken.light_share == 1.0) method_.learn(image, height_m);
                 watch.progress(what, static_cast<double>(i + 1) / static_cast<double>(count));

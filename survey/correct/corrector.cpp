@@ -64,7 +64,8 @@ void compare_light(const nlohmann::json& settings,
     }
     if (text_in(settings, has_rig ? "rig_sha256" : "map_sha256") != light.digest) {
         doubts.push_back(
-            {"gain-from", folder + (has_rig ? ": the rig there is another" : ": another map")});
+            {"gain-from",
+             folder + (has_rig ? ": made with a different rig" : ": made with a different map")});
     }
 }
 
@@ -129,7 +130,7 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     if (gain.images.empty()) {
         throw InputError(
-            "no gain can be taken from these images: of {} looked at, none has light and a map in "
+            "no gain can be derived from these images: of {} examined, none has light and a map in "
             "every channel; allowed: --gain{}{}",
             look.count,
             look.first_why.empty() ? "" : "; ",
@@ -167,7 +168,7 @@ SurveyGain gain_of_notes(std::string_view text,
         gain.reset();
     }
     if (!gain) {
-        throw InputError("{}: tells of no gain; allowed: as correct wrote it", where);
+        throw InputError("{}: contains no gain; allowed: as `correct` wrote it", where);
     }
     gain->folder = folder;
     return *gain;
@@ -179,7 +180,7 @@ SurveyGain gain_of_folder(const std::filesystem::path& folder,
                           std::vector<Suspicion>& doubts) {
     const std::filesystem::path file = folder / kCorrectionNotes;
     if (!std::filesystem::exists(file)) {
-        throw InputError("--gain-from: {}: holds no {}; allowed: a folder that correct wrote",
+        throw InputError("--gain-from: {}: contains no {}; allowed: a folder that `correct` wrote",
                          folder.string(),
                          kCorrectionNotes);
     }

@@ -89,7 +89,7 @@ struct Pass {
                             .height_px = image.height_px,
                             .mosaic = image.mosaic};
                 }
-                require_like(image, like, "as the first image");
+                require_like(image, like, "like the first image");
                 use(image);
                 images[i].cells = read.cells;
                 const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
@@ -197,7 +197,7 @@ Observed average_by_bands(Pass& pass,
             share(first),
             share(first + many));
         if (selection.skipped.size() > skipped) {
-            throw RunError("{}: changed while it was read: {}",
+            throw RunError("{}: changed while being read: {}",
                            selection.skipped.back().image,
                            selection.skipped.back().why);
         }
@@ -221,7 +221,7 @@ void require_images(const Selection& selection, const ObservationOptions& option
                                                 selection.skipped.size(),
                                                 selection.skipped.front().image,
                                                 selection.skipped.front().why);
-    throw InputError("no image to be used within {} m of {} m{}{}",
+    throw InputError("no usable image within {} m of {} m{}{}",
                      options.within_m,
                      options.altitude_m,
                      others,

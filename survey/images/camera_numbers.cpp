@@ -191,7 +191,7 @@ CameraNumbers expecting_usual_size(CameraNumbers camera, const std::vector<Image
     if (!file) return camera;
     const Crop crop = crop_of(camera, *file);
     camera.expected = ExpectedSize{.image = {crop.width_px, crop.height_px},
-                                   .as = "as most of the images looked at have",
+                                   .as = "like most of the images examined",
                                    .file = *file};
     return camera;
 }

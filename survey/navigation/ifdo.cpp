@@ -49,7 +49,7 @@ class Converter {
 
     [[nodiscard]] IfdoJson json_of(const YAML::Node& node, int depth = 0) {
         if (depth > kMostJsonDepth) fail(node, "it is nested too deeply");
-        if (left_ == 0) fail(node, "its aliases stand for more than the file could hold");
+        if (left_ == 0) fail(node, "its aliases expand to more than the file could hold");
         --left_;
         switch (node.Type()) {
             case YAML::NodeType::Scalar:
@@ -63,9 +63,9 @@ class Converter {
                 IfdoJson object = IfdoJson::object();
                 for (const auto& entry : node) {
                     const YAML::Node& key = entry.first;
-                    if (!key.IsScalar()) fail(key, "a key is not a word");
+                    if (!key.IsScalar()) fail(key, "a key is not a string");
                     if (object.contains(key.Scalar()))
-                        fail(key, fmt::format("'{}' stands twice", excerpt(key.Scalar())));
+                        fail(key, fmt::format("duplicate key '{}'", excerpt(key.Scalar())));
                     object[key.Scalar()] = json_of(entry.second, depth + 1);
                 }
                 return object;
@@ -89,7 +89,7 @@ void require_utf8(const std::string& name, std::string_view text) {
     try {
         (void)IfdoJson(text).dump();
     } catch (const IfdoJson::type_error&) {
-        throw InputError("{}: found bytes that are no UTF-8", name);
+        throw InputError("{}: found bytes that are not UTF-8", name);
     }
 }
 

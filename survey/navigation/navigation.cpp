@@ -148,7 +148,7 @@ Navigation::Navigation(std::string source,
         const auto [first, is_new] = poses_.try_emplace(key, pose);
         if (is_new) continue;
         first->second.fault =
-            fmt::format("the image '{}' stands twice{}",
+            fmt::format("duplicate image '{}'{}",
                         excerpt(key),
                         pose.line > 0 ? fmt::format(", also on line {}", pose.line) : "");
     }
@@ -164,7 +164,7 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
         throw InputError(
             "{} has no line for it{}",
             source_,
-            nameless_line_ > 0 ? fmt::format("; line {} has no image's name", nameless_line_) : "");
+            nameless_line_ > 0 ? fmt::format("; line {} names no image", nameless_line_) : "");
     }
     const ImagePose& pose = found->second;
     const Sled& sled = pose.sled;

@@ -273,10 +273,8 @@ NavigationColumns navigation_columns(const HeaderRequest& request, const Header&
         if (!place) continue;
         columns->names.at(field) = header[*place];
         if (std::ranges::count(names, names[*place]) > 1) {
-            fail_at_line(request.file,
-                         request.line,
-                         "the column '{}' stands twice",
-                         printable(header[*place]));
+            fail_at_line(
+                request.file, request.line, "duplicate column '{}'", printable(header[*place]));
         }
     }
     require_units(request, *columns);

@@ -127,7 +127,7 @@ void require_no_times(const NavigationOptions& options) {
     if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
     throw InputError(
         "{}: {} found, but its poses are of images and not of times; allowed with poses over time, "
-        "for which --columns time=COLUMN asks",
+        "which --columns time=COLUMN selects",
         options.source,
         options.time_mask.empty() ? "--clock-offset-s" : "--image-time");
 }
@@ -173,9 +173,9 @@ Navigation navigation_by_time(const NavigationTable& table,
                      first.line,
                      "the first of {} lines, none of which can be used: {}",
                      table.rows.size(),
-                     fault.empty() ? "altitude_m: found one that --altitude or the camera's place "
-                                     "leaves out"
-                                   : fault);
+                     fault.empty()
+                         ? "altitude_m: found one that --altitude or the camera's position excludes"
+                         : fault);
     }
     notes.times = TimesOfImages{.mask = options.time_mask,
                                 .clock_offset_s = options.clock_offset_s,
@@ -193,8 +193,8 @@ Navigation navigation_by_time(const NavigationTable& table,
     navigation.note(std::move(notes));
     if (without_zone > 0) {
         navigation.warn(fmt::format(
-            "{}: the times of {} are taken for UTC: their EXIF has an OffsetTime, which is of the "
-            "file's last change, and no OffsetTimeOriginal; --clock-offset-s shifts them",
+            "{}: the times of {} are taken as UTC: their EXIF has an OffsetTime, which belongs to "
+            "the file's last change, and no OffsetTimeOriginal; --clock-offset-s shifts them",
             options.source,
             counted(without_zone, "image")));
     }
@@ -244,8 +244,8 @@ void require_angles(const Navigation& navigation,
     const std::string_view lacking = told.pitch ? "roll" : told.roll ? "pitch" : "pitch and roll";
     if (is_mounted_apart(mounting)) {
         throw InputError(
-            "{}: has no {}; needed, for the rig's position_m and orientation_deg place the camera "
-            "on the vehicle",
+            "{}: has no {}; needed, since the rig's position_m and orientation_deg place the "
+            "camera on the vehicle",
             options.source,
             lacking);
     }
@@ -287,10 +287,10 @@ Navigation navigation_of_ifdo(std::string_view text,
     navigation.note(std::move(notes));
     // JSON has a bracket at its end; YAML may be cut anywhere.
     if (!text.ends_with('\n') && !text.ends_with('}')) {
-        navigation.warn(fmt::format(
-            "{}: the file ends without a line end: if it was cut short, its last value may lack "
-            "digits",
-            options.source));
+        navigation.warn(
+            fmt::format("{}: the file ends without a line break: if it was truncated, its last "
+                        "value may lack digits",
+                        options.source));
     }
     return navigation;
 }

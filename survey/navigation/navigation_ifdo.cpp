@@ -28,7 +28,7 @@ std::string without_height(const Ifdo& ifdo, const IfdoJson& image) {
         kIfdoHeight,
         ifdo.field(image, kIfdoOverSea).is_null()
             ? ""
-            : fmt::format("; {} is over sea level, not over the floor", kIfdoOverSea));
+            : fmt::format("; {} is above sea level, not above the floor", kIfdoOverSea));
 }
 
 // NaN and a fault unless it is a number.
@@ -80,8 +80,8 @@ Navigation parse_navigation_ifdo(const std::string& name,
     if (ifdo.items().empty()) throw InputError("{}: found no image in image-set-items", name);
     if (!is_told(ifdo, kIfdoHeight)) {
         throw InputError(
-            "{}: {}, in the header or of any image; allowed: the camera's height over "
-            "the sea floor in metres",
+            "{}: {}, in the header or of any image; allowed: the camera's height above the sea "
+            "floor in metres",
             name,
             without_height(ifdo, *ifdo.items().begin()));
     }

@@ -20,7 +20,7 @@ Track::Track(std::vector<TrackPoint> points, double longest_gap_s)
 }
 
 Sled Track::at(double time_s) const {
-    if (points_.empty()) throw InputError("has no line that could be used");
+    if (points_.empty()) throw InputError("has no usable line");
     const auto after = std::ranges::lower_bound(points_, time_s, {}, &TrackPoint::time_s);
     if (after != points_.end() && after->time_s == time_s) return after->sled;
     if (after == points_.begin()) {

@@ -79,7 +79,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
              {correct + "--columns image=", "--columns: found 'image='; allowed: NAME=COLUMN"},
              {correct + "--angles-in grad", "--angles-in"},
              {correct + "--image-time YYMM",
-              "--image-time: found 'YYMM', which has not YYYY in one place; allowed: YYYY, MM, DD"},
+              "--image-time: found 'YYMM', in which YYYY is split; allowed: YYYY, MM, DD"},
              {correct + "--altitude-is up", "--altitude-is"},
              {"baseline homomorphic raw -o out --nav n --altitude-offset-m 1001",
               "--altitude-offset-m: found 1001; allowed: -1000 to 1000"},
@@ -104,8 +104,9 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
 // What a script passes for a variable that it never set: the folder that it runs in is not meant.
 TEST_F(CommandErrors, AnEmptyNameIsNone) {
     for (const char* command : {"render", "generate", "trace", "validate", "study", "lightmap"})
-        refused({command, "rig.toml", "-o", ""}, "--output: found an empty text; allowed: a name");
-    refused({"integrate", ""}, "DIR: found an empty text; allowed: a name");
+        refused({command, "rig.toml", "-o", ""},
+                "--output: found an empty string; allowed: a name");
+    refused({"integrate", ""}, "DIR: found an empty string; allowed: a name");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "the rig alone";
 }
 

@@ -157,7 +157,7 @@ TEST_F(Fitted, FramesThatCannotServeAreRefusedByWhatIsLacking) {
     EXPECT_TRUE(std::regex_search(
         murky.err,
         std::regex(
-            R"(murky.toml: the frames can be this rig's image to \S+ only; allowed: 0.001)")))
+            R"(murky.toml: the frames give this rig's image to \S+ only; allowed: 0.001)")))
         << murky.err;
     EXPECT_NE(murky.err.find("it lacks"), std::string::npos) << murky.err;
     EXPECT_FALSE(fs::exists(folder_.path() / "out" / "as-murky"));

@@ -65,7 +65,7 @@ TEST_F(CommandTrace, IntegrationsKeepOutOfOtherImagesFolders) {
         const fs::path image = path(notes).parent_path() / "image.exr";
         const std::string before = read_text_file(image);
         refused("integrate rendered" + arguments,
-                notes + ": found the notes of a render or trace; allowed: ");
+                notes + ": found the record of a render or trace; allowed: ");
         EXPECT_EQ(read_text_file(image), before);
     };
     expect_refused("-o traced", "traced/trace.json");

@@ -199,7 +199,7 @@ TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
                    "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
         FAIL() << "nothing was said";
     } catch (const RunError& error) {
-        EXPECT_NE(std::string(error.what()).find("What it writes itself must be the same"),
+        EXPECT_NE(std::string(error.what()).find("Files that it writes itself must be the same"),
                   std::string::npos)
             << error.what();
     }
@@ -211,7 +211,7 @@ constexpr const char* kScene = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
 
 TEST_F(SceneSurvey, RefusesLightsThatAreNotOurs) {
     expect_refusal(refusal(std::string(kScene) + "light_source { <0, 0, -9>, rgb 1 }\n"),
-                   "reef.pov: found 1 light source that is no strobe of aphotic.inc");
+                   "reef.pov: found 1 light source that is not from aphotic.inc");
 }
 
 TEST_F(SceneSurvey, RefusesASceneWithoutStrobes) {
@@ -258,7 +258,7 @@ TEST_F(SceneSurvey, RefusesASpectrumsNameThatIsMisspelt) {
     expect_refusal(
         refusal(std::string(kScene) +
                 "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"green-alga\") } }\n"),
-        "is no known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
+        "is not a known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
 }
 
 TEST_F(SceneSurvey, RefusesMoreLightsThanPovrayTakesInWater) {
@@ -365,7 +365,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "global_settings { photons { count 50 } }\n"
                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
                  "photons { target refraction on } }\n"},
-        OwnLight{"media of the scene's own",
+        OwnLight{"the scene's own media",
                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
                  "media { samples 1 scattering { 1, 0.5 } } } }\n"}));
 
@@ -418,7 +418,7 @@ TEST_F(SceneSurvey, ErrorsNameNoFileThatIsGone) {
 TEST_F(SceneSurvey, RefusesLightUnderNought) {
     expect_refusal(
         refusal(std::string(kScene) + "sphere { <0, 0, 1.8>, 0.2 pigment { rgb -0.5 } }\n"),
-        "allowed: 0 and more. Is there a colour under 0?");
+        "allowed: 0 or more. Is there a colour below 0?");
 }
 
 // The camera looks out of a block without water, in which a lamp lights a part of the floor.
@@ -426,14 +426,16 @@ TEST_F(SceneSurvey, RefusesWhatNoWaterDimsInAPartOfTheImage) {
     const std::string dry = std::string(kScene) +
                             "box { <-0.3, -0.3, -1>, <0.3, 0.3, 2.5> pigment { rgbt 1 } }\n"
                             "Aphotic_Cone (0, z, 60, 1, \"xenon-flash\", 1)\n";
-    expect_refusal(refusal(dry), "found light that no water dims, in ");
+    expect_refusal(refusal(dry), "found light that passes through no water, in ");
     // Where the promise is void by another fault, this one is named too.
     const std::vector<std::string> reasons =
         survey(dry + "sphere { <0.6, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n").no_promise;
     ASSERT_EQ(reasons.size(), 2U);
     std::smatch counts;
     ASSERT_TRUE(std::regex_match(
-        reasons[1], counts, std::regex(R"(light that no water dims, in (\d+) of (\d+) pixels)")))
+        reasons[1],
+        counts,
+        std::regex(R"(light that passes through no water, in (\d+) of (\d+) pixels)")))
         << reasons[1];
     // The block is square, 0.6 m wide, and no farther than the floor at 2 m: each pixel counts
     // once, however many strobes shine on it.

@@ -92,7 +92,7 @@ TEST(SurveyCheck, ImagesOfOneAltitudeLookRight) {
         look.quotient = {731.3, 997.1, 1013.7};
         const std::vector<ImageLook> looks(16, look);
         EXPECT_EQ(told_of(looks), kNothing) << altitude_m;
-        EXPECT_TRUE(has(not_checked(looks), "16 images, all of one altitude"));
+        EXPECT_TRUE(has(not_checked(looks), "16 images, all at one altitude"));
     }
     constexpr double kAltimeter_m = 0.02;
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
@@ -174,7 +174,7 @@ TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
         EXPECT_EQ(told_of(changed(seed), Mosaic::Bggr), kBayer) << seed;
     }
-    EXPECT_TRUE(has(suspicions(changed(1), Mosaic::Bggr)[0].what, "--bayer RGGB puts them right"));
+    EXPECT_TRUE(has(suspicions(changed(1), Mosaic::Bggr)[0].what, "--bayer RGGB corrects this"));
 }
 
 // Poses of other images turn brightness and colours alike, and no pattern puts them right.
@@ -538,7 +538,7 @@ TEST(SurveyCheck, ExposuresThatLevelsDoNotFollowAreTold) {
     const auto doubt = exposure_doubt(looks);
     ASSERT_TRUE(doubt.has_value());
     EXPECT_TRUE(
-        has(doubt->what, "vary 8-fold, where the images' own levels go as their power 0.3"));
+        has(doubt->what, "vary 8-fold, but the images' levels go as their power 0.3"));
     for (ImageLook& look : looks) look.level = std::log(*look.told);
     EXPECT_FALSE(exposure_doubt(looks).has_value());
     for (ImageLook& look : looks) look.told.reset();

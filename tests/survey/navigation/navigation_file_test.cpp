@@ -232,7 +232,7 @@ TEST(NavigationFile, ATrackIsJoinedByTheImagesTimes) {
         EXPECT_TRUE(
             has(fault_of_image(nav, "c20240309_110000_000.tif"), "3600 s before the first"));
         EXPECT_EQ(fault_of_image(nav, "c2024.tif"),
-                  "nav: its name has no time where --image-time xYYYYMMDDxhhmmssxfff has it");
+                  "nav: its name has no time where --image-time xYYYYMMDDxhhmmssxfff expects it");
     }
     NavigationOptions late = options;
     late.clock_offset_s = 3600.0;
@@ -298,7 +298,7 @@ TEST(NavigationFile, ColumnsMayAskForTimesInsteadOfNames) {
 TEST(NavigationFile, TimesThatAreSaidInVainAreRefused) {
     EXPECT_EQ(refusal("a.tif 2 0 0\n", {.clock_offset_s = 1.0}),
               "nav: --clock-offset-s found, but its poses are of images and not of times; allowed "
-              "with poses over time, for which --columns time=COLUMN asks");
+              "with poses over time, which --columns time=COLUMN selects");
     EXPECT_TRUE(
         refusal(kOplab, {.time_mask = std::string(kMask)}).starts_with("nav: --image-time"));
 }
@@ -371,7 +371,7 @@ TEST_F(TagsOfImages, AnImageWithoutThemCostsItselfAlone) {
               "tags: altitude_m: found no number; allowed: 0.001 to 10000");
     EXPECT_EQ(fault_of_image(nav, path("e.tif")), "tags: roll: found 'zero'; allowed: a number");
     EXPECT_TRUE(has(fault_of_image(nav, path("f.tif")), "cannot be read"));
-    EXPECT_EQ(fault_of_image(nav, path("g.tif")), "tags: there is no such file any more");
+    EXPECT_EQ(fault_of_image(nav, path("g.tif")), "tags: the file no longer exists");
 }
 
 // --- What altitudes are, and where the camera is -----------------------------------------------
@@ -409,8 +409,8 @@ TEST(NavigationFile, TheRigsMountingCountsAndOptionsComeBeforeIt) {
     expect_sled(parse_navigation(text, options, {}, &rig).pose_of("a").sled, 3.0, 60.0, 0.0);
     EXPECT_EQ(
         refusal_of([&] { return parse_navigation("image,altitude_m\na,2\n", options, {}, &rig); }),
-        "nav: has no pitch and roll; needed, for the rig's position_m and orientation_deg "
-        "place the camera on the vehicle");
+        "nav: has no pitch and roll; needed, since the rig's position_m and orientation_deg place "
+        "the camera on the vehicle");
 }
 
 TEST(NavigationFile, WithoutAttitudesHeightsNeedARig) {
