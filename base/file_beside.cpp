@@ -15,7 +15,7 @@ bool leads_out(const fs::path& relative) {
     return relative.empty() || relative.is_absolute() || *relative.begin() == "..";
 }
 
-// Where the path ends when every link on its way has been followed.
+// The path after all its links have been followed.
 fs::path end_of(const fs::path& path) {
     std::error_code error;
     fs::path end = fs::canonical(path, error);
@@ -30,7 +30,7 @@ fs::path end_of(const fs::path& path) {
 fs::path file_beside(const fs::path& folder, const std::string& name) {
     fs::path path = folder / name;
     constexpr std::string_view kAllowed = "a file in the same folder or below it";
-    // By its words first: what lies elsewhere is not even looked for.
+    // Checks the text of the path first, so that nothing outside is even looked up.
     if (leads_out(fs::path(name).lexically_normal())) {
         throw InputError("found '{}'; allowed: {}", name, kAllowed);
     }

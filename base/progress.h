@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One line on the terminal that says how far the work is and how long it will take. Silent when
-// stderr is no terminal, and for the first second.
+// One line on the terminal with the share of work done and the time left. Silent if stderr is not a
+// terminal, and for the first second.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ class ProgressLine {
     // share: of the work, 0 to 1.
     void show(std::string_view what, double share);
 
-    // Wipes the line until it is shown again, for something else to be said.
+    // Wipes the line until the next show(), so that something else can be printed.
     void wipe();
 
   private:

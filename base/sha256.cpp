@@ -58,7 +58,7 @@ std::string sha256_of_floats(std::span<const float> samples) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-    // A pipe would be waited for, and a device has no end.
+    // Opening a pipe would block, and a device has no end.
     const bool is_regular = std::filesystem::is_regular_file(file);
     std::ifstream in(is_regular ? file : std::filesystem::path(), std::ios::binary);
     if (!in) throw RunError("{}: cannot be read", file.string());

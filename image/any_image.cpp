@@ -12,7 +12,7 @@
 namespace aphotic {
 namespace {
 
-// OpenImageIO cuts a path at its question mark, and takes the rest for options.
+// OpenImageIO cuts a path at its question mark and reads the rest as options.
 void require_plain_path(const std::filesystem::path& file) {
     if (file.string().find('?') == std::string::npos) return;
     throw InputError(

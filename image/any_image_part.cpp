@@ -8,8 +8,8 @@
 namespace aphotic {
 
 void* function_of_part(const char* name) {
-    // Through the program's own run path, else where it was installed; stays loaded, for the images
-    // hold on to it.
+    // Searched along the program's run path, then where it was installed; never unloaded, since the
+    // images refer to it.
     static void* const kPart = [] {
         void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
         return part != nullptr

@@ -16,7 +16,7 @@ void check_samples(const fs::path& file,
                    std::span<const float> samples,
                    int width_px,
                    int first_row) {
-    // Written so that NaN fails it.
+    // Written so that NaN fails.
     const auto is_good = [](float value) { return value >= 0.0F && value < kLargestHalf; };
     const auto bad = std::find_if_not(samples.begin(), samples.end(), is_good);
     if (bad == samples.end()) return;

@@ -24,10 +24,10 @@
 namespace aphotic {
 namespace {
 
-// What libtiff says, instead of on the terminal.
+// Catches libtiff's messages instead of printing them.
 struct Said {
     std::string error;              // the first
-    bool has_false_counts = false;  // of bytes, in place of which it made up others
+    bool has_false_counts = false;  // byte counts that it had to guess
 };
 
 int note_error(TIFF* /*tiff*/, void* said, const char*, const char* format, std::va_list with) {
@@ -45,7 +45,7 @@ int note_warning(TIFF* /*tiff*/, void* said, const char*, const char* format, st
     return 1;
 }
 
-// The first directory of a file, as libtiff reads it.
+// The first directory of a file, read by libtiff.
 class Directory {
   public:
     explicit Directory(const std::filesystem::path& file)
@@ -57,12 +57,12 @@ class Directory {
         ::TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMost_bytes);
         ::TIFFOpenOptionsSetErrorHandlerExtR(options.get(), note_error, &said_);
         ::TIFFOpenOptionsSetWarningHandlerExtR(options.get(), note_warning, &said_);
-        // Not mapped, strips as they are stored, their places when they are asked for.
+        // Not memory-mapped, strips as stored, their offsets read on demand.
         tiff_.reset(::TIFFOpenExt(file.c_str(), "rmcO", options.get()));
         require_no_error();
     }
 
-    // A number of one value, or what libtiff takes where there is none.
+    // A single-valued tag, or libtiff's default.
     template <typename Value>
     [[nodiscard]] std::uint64_t number(std::uint32_t tag) const {
         Value value{};
@@ -72,18 +72,18 @@ class Directory {
     [[nodiscard]] std::uint64_t size() const { return size_; }
     [[nodiscard]] bool is_tiled() const { return ::TIFFIsTiled(tiff_.get()) != 0; }
 
-    // Of strips or tiles.
+    // Strips or tiles.
     [[nodiscard]] std::uint32_t parts() const {
         return is_tiled() ? ::TIFFNumberOfTiles(tiff_.get()) : ::TIFFNumberOfStrips(tiff_.get());
     }
     [[nodiscard]] std::uint64_t offset(std::uint32_t part) const {
         return ::TIFFGetStrileOffset(tiff_.get(), part);
     }
-    // 0: none is told.
+    // 0 if absent.
     [[nodiscard]] std::uint64_t bytes(std::uint32_t part) const {
         return ::TIFFGetStrileByteCount(tiff_.get(), part);
     }
-    // Of the largest, once it is unpacked.
+    // The largest, unpacked.
     [[nodiscard]] std::uint64_t unpacked_bytes() const {
         return is_tiled() ? ::TIFFTileSize64(tiff_.get()) : ::TIFFStripSize64(tiff_.get());
     }
@@ -128,7 +128,7 @@ void require_sound_sizes(const Directory& tiff) {
                   quotient_up(is_separate ? bits : samples * bits, kByte));
 }
 
-// Frees what zlib holds.
+// Frees zlib's buffers.
 class Inflater {
   public:
     Inflater() {
@@ -143,7 +143,7 @@ class Inflater {
         is_at_end_ = false;
     }
 
-    // Whether the stream has its end and its checksum among these bytes or before them.
+    // Whether the stream's end and checksum are within these bytes or those before them.
     bool take(std::span<std::uint8_t> bytes, std::uint64_t most_bytes) {
         stream_.next_in = bytes.data();
         stream_.avail_in = static_cast<uInt>(bytes.size());
@@ -198,7 +198,7 @@ void require_whole_tiff(const std::filesystem::path& file) {
 }
 
 void require_sound_streams(const std::filesystem::path& file) {
-    // Streams of zlib's: Adobe's deflate, the same by its old number, and Pixar's logarithms in it.
+    // zlib streams: Adobe's deflate, its old number, and Pixar's log encoding.
     constexpr std::array<std::uint64_t, 3> kDeflated{
         COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_PIXARLOG};
     constexpr std::uint64_t kMostTimes = 2;  // Pixar's samples have 16 bits, whatever the image's
