@@ -22,26 +22,26 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would like it
+using OrderedJson = nlohmann::ordered_json;  // as a reader of the file expects it
 
 namespace {
 
 constexpr const char* kFormat = "aphotic-manifest-5";
-// A thousand times what the manifest of 100 wavelengths takes.
+// A thousand times the size of a manifest of 100 wavelengths.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 
-// A digit that changed would make an image of other weights under the same promise, and be of the
+// A changed digit would give an image with other weights under the same promise, and still have the
 // right type.
 constexpr const char* kChecksum = "sha256";
 
-// Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
+// Titles are the user's: bytes that are not UTF-8 are replaced, not refused.
 template <class AnyJson>
 std::string text_of(const AnyJson& json) {
     constexpr int kIndent = 2;
     return json.dump(kIndent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-// Of all that the manifest holds beside it, in whatever order.
+// Over everything else in the manifest, in any order.
 std::string checksum_of(Json json) {
     json.erase(kChecksum);
     return sha256_of_text(text_of(json));
@@ -79,7 +79,7 @@ class Writer {
     OrderedJson& object_;
 };
 
-// What a value must be in JSON.
+// The JSON type of a value, in words.
 template <typename T>
 constexpr std::string_view kWords = "a list of numbers";
 template <>
@@ -95,7 +95,7 @@ constexpr std::string_view kWords<std::array<double, kChannels>> = "three number
 template <>
 constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of strings";
 
-// Reads the fields of one JSON object, and says which one is wrong.
+// Reads the fields of one JSON object and reports which one is wrong.
 class Reader {
   public:
     Reader(const Json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -176,7 +176,7 @@ class Reader {
     std::string where_;
 };
 
-// A frame's name becomes a file's name: nothing in it may lead out of the folder.
+// A frame's name becomes a file name: nothing in it may lead out of the folder.
 bool is_plain_name(std::string_view name) {
     const auto is_plain = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

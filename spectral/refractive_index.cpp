@@ -36,7 +36,7 @@ std::array<double, kQuanFryTerms> read_quan_fry() {
     return n;
 }
 
-// The number that text begins with; text is left at what follows.
+// Reads the number at the front of text and advances text past it.
 double take_number(std::string_view& text) {
     return read_leading_number<double>(text).value_or(std::nan(""));
 }

@@ -19,7 +19,7 @@ bool all_finite(const std::vector<double>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
-// The parts of range that covered leaves out: "380 to 400 nm and 720 to 780 nm".
+// The parts of range outside covered: "380 to 400 nm and 720 to 780 nm".
 std::string gap_text(WavelengthRange covered, WavelengthRange range) {
     if (covered.last_nm < range.first_nm || covered.first_nm > range.last_nm) return "all";
     std::string text;
@@ -33,7 +33,7 @@ std::string gap_text(WavelengthRange covered, WavelengthRange range) {
     return text;
 }
 
-// What to write in the rig instead: the covered part of range, else all that is covered.
+// A suggestion for the rig: the covered part of range, or else the whole covered range.
 std::string remedy_text(WavelengthRange common, WavelengthRange range) {
     if (!(common.first_nm < common.last_nm)) {
         return "no range_nm works, since these curves have no wavelengths in common";
@@ -102,7 +102,7 @@ double product_at(std::span<const Spectrum> curves, double lambda_nm) {
 }
 
 WavelengthRange common_range(std::span<const Spectrum* const> curves) {
-    // No curve at all bounds nothing.
+    // Without curves nothing is bounded.
     WavelengthRange common{-std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::infinity()};
     for (const Spectrum* curve : curves) {

@@ -28,8 +28,8 @@ constexpr std::string_view kArraySize = "36";
 constexpr double kArrayFirst_nm = 380.0;  // as SpectralRender has it
 constexpr double kArrayStep_nm = 10.0;
 constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
-constexpr std::size_t kMostShown = 80;  // of a text, in a message
-constexpr int kMaxDepth = 100;          // of brackets in brackets
+constexpr std::size_t kMostShown = 80;  // of a string, in a message
+constexpr int kMaxDepth = 100;          // of nested brackets
 
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kOfWords =
@@ -59,7 +59,7 @@ std::size_t text_end(std::string_view text, std::size_t at) {
     return at < text.size() ? at + 1 : std::string_view::npos;
 }
 
-// Blanks for comments, which nest, and for texts after the quote that they begin with.
+// Replaces comments, which nest, and the contents of strings by blanks.
 std::string without_comments(const std::string& file, std::string_view whole) {
     std::string text(without_byte_order_mark(whole));
     for (std::size_t at = 0; at < text.size();) {
@@ -117,7 +117,7 @@ class Parser {
         std::string_view behind = rest_;
         const std::size_t digit = rest_[0] == '.' ? 1 : 0;
         if (digit < rest_.size() && kDigits.find(rest_[digit]) != std::string_view::npos) {
-            // One out of range is not a number: it may stand where nobody asks for it.
+            // A value out of range is not an error here: it may be in a place that nobody reads.
             token_.kind = Token::Kind::Number;
             token_.number = read_leading_number<double>(behind).value_or(
                 std::numeric_limits<double>::quiet_NaN());
@@ -237,7 +237,7 @@ class Parser {
              twice->line);
     }
 
-    // Two spectra may not go to one file, on disks that know no case either.
+    // Two spectra may not go to one file, even on file systems that ignore case.
     void add(SplineSpectrum spectrum) {
         const std::string table = spline_table_name(spectrum.identifier);
         for (const SplineSpectrum& other : found_.spectra) {

@@ -171,8 +171,8 @@ constexpr std::string_view kDaylightsLoss =
     "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
     "docs/water.md";
 
-// The most common of mistakes, and one that no image shows: where a table says so itself, it is
-// said. Not asked of a title, which may tell what a was derived from.
+// The most common mistake, and one that no image shows, so it is reported if the table itself says
+// so. Titles are not checked, since they may name what a table was derived from.
 void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
     if (!is_of_water(rule.role)) return;
     for (const std::string& column : table.columns) {
