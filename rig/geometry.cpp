@@ -45,7 +45,7 @@ std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera) {
 
 double port_reach_m(const Rig& rig) {
     if (!rig.camera.port) return 0.0;
-    // Rays run farthest out at the corners, and a bit farther in blue or red than in between.
+    // Rays reach farthest at the corners, and slightly farther in blue or red than between.
     constexpr double kRoom = 1.05;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     double reach_m = 0.0;

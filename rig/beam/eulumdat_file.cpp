@@ -83,7 +83,7 @@ void take_label(PhotometricFile& photometry, std::string_view keyword, std::stri
     if (!text.empty()) photometry.labels.push_back({std::string(keyword), printable(text)});
 }
 
-// The stored planes: Mc1 - 1, counted from 0, and how many.
+// The stored planes: Mc1 - 1, counted from 0, and their number.
 struct StoredPlanes {
     std::size_t first = 0;
     std::size_t count = 0;
@@ -104,7 +104,7 @@ StoredPlanes stored_planes(std::size_t symmetry, std::size_t planes) {
     }
 }
 
-// The angles that a symmetry asks for are there.
+// Checks that the angles required by a symmetry exist.
 void check_plane(const std::string& file, const FileNumber& angle, double wanted_deg) {
     if (angle.value == wanted_deg) return;
     fail_number(
@@ -138,7 +138,7 @@ std::size_t next_plane_count(ValueLines& lines, std::size_t symmetry) {
     return planes;
 }
 
-// The factor from values to candela, and what the file says of the lamps.
+// The factor from values to candela, and the file's data on the lamps.
 double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
     const std::string& file = lines.file();
     const double factor =
@@ -182,7 +182,7 @@ std::vector<std::vector<double>> next_planes(ValueLines& lines,
     return columns;
 }
 
-// 0 where the steps differ, as the format has it.
+// 0 if the steps differ, as the format requires.
 std::string step_text(const std::vector<double>& angles_rad) {
     constexpr double kSame_deg = 1e-9;
     const double step_deg =

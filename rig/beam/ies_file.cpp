@@ -20,7 +20,7 @@ constexpr std::size_t kMostTilts = 1000;
 constexpr std::size_t kMostLamps = 1'000'000;
 constexpr double kMostLumens = 1e12;
 
-// A file's lines, one after the other.
+// A file's lines, in order.
 class LineReader {
   public:
     explicit LineReader(std::string_view text) : rest_(text) {}
@@ -42,7 +42,7 @@ class LineReader {
     std::size_t line_ = 0;
 };
 
-// Numbers parted by blanks, commas and line ends.
+// Numbers separated by blanks, commas and line ends.
 class NumberReader {
   public:
     NumberReader(std::string file, std::string_view text, std::size_t first_line)
@@ -90,7 +90,7 @@ class NumberReader {
     std::size_t line_;
 };
 
-// The year of the edition, of a line that names one. A file of 1986 has text of any kind alone.
+// The year of the edition, from a line that names one. A file of 1986 has only free text.
 std::optional<int> edition_in(const std::string& file, std::size_t number, std::string_view line) {
     std::string name;
     for (const char c : lower_case(std::string(line))) {
@@ -135,7 +135,7 @@ void add_label(std::vector<PhotometricLabel>& labels, std::string_view line) {
     }
 }
 
-// What follows TILT= in a line that begins so.
+// The text after TILT= in a line that starts so.
 std::optional<std::string_view> tilt_in(std::string_view line) {
     constexpr std::string_view kTilt = "tilt";
     if (lower_case(std::string(line.substr(0, kTilt.size()))) != kTilt) return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<std::string_view> tilt_in(std::string_view line) {
     return without_blanks(line.substr(1));
 }
 
-// A table of factors by which the light changes as the lamp is tilted: what we read has none.
+// A table of factors for light over the lamp's tilt: we accept only constant ones.
 void pass_over_constant_tilt(NumberReader& numbers) {
     const std::string& file = numbers.file();
     static_cast<void>(numbers.next("the lamp's geometry"));
@@ -210,7 +210,7 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
 
 using Columns = std::vector<std::vector<double>>;
 
-// Which symmetry the horizontal angles of type C tell of.
+// The symmetry given by the horizontal angles of type C.
 void unfold_turn(BeamTable& table,
                  const std::string& file,
                  const std::vector<FileNumber>& horizontal,
@@ -264,7 +264,7 @@ std::vector<Value> with_mirror_image(const std::vector<Value>& values) {
     return both;
 }
 
-// Types A and B: below the horizon and to the left as above it and to the right.
+// Types A and B: mirrors above the horizon to below it, and right to left.
 void unfold_quadrants(BeamTable& table, Columns columns) {
     if (table.vertical_rad.front() == 0.0) {
         table.vertical_rad = with_negatives(table.vertical_rad);
@@ -307,7 +307,7 @@ BeamTable next_table(NumberReader& numbers, const IesHeader& header) {
     return table;
 }
 
-// Lines of a width that every reader takes, words whole.
+// Lines short enough for every reader, with whole words.
 constexpr std::size_t kLineWidth = 100;
 
 class LineWriter {
@@ -329,7 +329,7 @@ class LineWriter {
     std::size_t width_ = 0;
 };
 
-// Words whole, on lines of [MORE] where one is full.
+// Whole words, continued on lines of [MORE] when one is full.
 void add_label(LineWriter& lines, const PhotometricLabel& label) {
     std::string line = fmt::format("[{}]", label.keyword);
     bool has_word = false;
@@ -348,7 +348,7 @@ void add_label(LineWriter& lines, const PhotometricLabel& label) {
     lines.end_line();
 }
 
-// Keywords of the standard stand as they are, others begin with _.
+// The standard's keywords are kept, others begin with _.
 std::string ies_keyword(const std::string& keyword) {
     constexpr std::array kKnown{"TEST",         "TESTLAB",     "ISSUEDATE",     "MANUFAC",
                                 "LUMCAT",       "LUMINAIRE",   "LAMPCAT",       "LAMP",

@@ -18,7 +18,7 @@ std::string doubt_of_centre(const LensModel& lens, const Vector2d& size_px) {
     const Vector2d middle_px = 0.5 * size_px;
     const Vector2d off = (lens.centre_px - middle_px).cwiseAbs().cwiseQuotient(size_px);
     if (off.maxCoeff() <= kUsualShare) return "";
-    // 0, or 0.5 where a tool's first pixel is at 0, or a share of the image.
+    // 0, or 0.5 if a tool's first pixel is at 0, or a fraction of the image.
     const bool is_in_corner = lens.centre_px.cwiseAbs().maxCoeff() <= 1.5;
     return fmt::format(
         "principal point: found {:g}, {:g} in an image of {:g} x {:g}; usual: near the middle, "

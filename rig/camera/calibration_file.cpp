@@ -165,9 +165,9 @@ void require_within(
         "{}: {}: found {}; allowed: a number from {} to {}", file_name, what, value, least, most);
 }
 
-// Numbers with which the lens can be worked out, whatever their format.
+// Numbers that any format's lens can be computed with.
 void require_sound(const std::string& file_name, const LensModel& lens) {
-    // What focal_length_mm over pixel_pitch_um can be.
+    // The range of focal_length_mm over pixel_pitch_um.
     constexpr double kLeastFocal_px = 1e-3;
     constexpr double kMostFocal_px = 1e10;
     constexpr double kMost = 1e9;

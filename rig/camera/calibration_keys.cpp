@@ -38,8 +38,8 @@ std::size_t line_of(const YAML::Mark& mark) {
     return mark.is_null() ? 1 : static_cast<std::size_t>(mark.line) + 1;
 }
 
-// The one document of a file. Aliases, which no calibration has, would let few bytes stand for any
-// number of values.
+// The one document of a file. Aliases, which no calibration has, would let a few bytes expand to
+// any number of values.
 class YamlReader : public YAML::EventHandler {
   public:
     explicit YamlReader(const std::string& file_name) : file_name_(file_name) {}
@@ -80,7 +80,7 @@ class YamlReader : public YAML::EventHandler {
   private:
     struct Open {
         CalibrationValue value;
-        std::optional<std::string> key{};  // of a map: that of the value to come
+        std::optional<std::string> key{};  // of a map: that of the next value
     };
 
     void open(const YAML::Mark& mark, Kind kind) {
@@ -116,7 +116,7 @@ class YamlReader : public YAML::EventHandler {
     CalibrationValue root_;
 };
 
-// Lines of places that are asked for from first to last.
+// Line numbers of offsets requested in increasing order.
 class LineCount {
   public:
     explicit LineCount(std::string_view text) : text_(text) {}

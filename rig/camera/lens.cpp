@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Cameras' frame is X right, Y down, Z along the axis.
+// The camera frame has X right, Y down, Z along the axis.
 Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
     const std::optional<Vector3d> direction = direction_at(lens, point_px);
     if (!direction) {
@@ -97,7 +97,7 @@ Pinhole pinhole_about(const Camera& camera) {
         return {.focal_length_m = camera.focal_length_m,
                 .sensor_width_m = camera.pixel_pitch_m * camera.width_px};
     }
-    constexpr double kRoom = 1.001;  // the rim is looked at in steps
+    constexpr double kRoom = 1.001;  // the rim is searched in steps
     double half_width = 0.0;         // at unit distance
     const double shape = static_cast<double>(camera.width_px) / camera.height_px;
     for (const Vector3d& direction : rim_seen_by_lens(camera)) {

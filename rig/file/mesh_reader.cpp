@@ -24,7 +24,7 @@ namespace {
 
 using Triangle = std::array<int, 3>;
 
-// The words of a line, comments and line ends aside.
+// The words of a line, without comments and line ends.
 std::vector<std::string_view> words_of(std::string_view line) {
     constexpr std::string_view kBlank = " \t\r";
     line = line.substr(0, line.find('#'));
@@ -39,7 +39,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
-// As much of a line as one reads.
+// As much of a line as a message shows.
 std::string shown(const std::vector<std::string_view>& words) {
     constexpr std::size_t kMostLetters = 200;
     const std::string line = fmt::format("{}", fmt::join(words, " "));
@@ -53,16 +53,15 @@ std::optional<double> finite_number(std::string_view word) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal do
-// not count. None where no vertex above it has that number.
+// The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal
+// are ignored. Empty if no vertex above it has that number.
 std::optional<int> vertex_of(std::string_view corner, int vertices) {
     const auto index = read_number<int>(corner.substr(0, corner.find('/')));
     if (!index || *index == 0 || *index > vertices || *index < -vertices) return std::nullopt;
     return *index > 0 ? *index - 1 : vertices + *index;
 }
 
-// volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
-// rounding.
+// volatile: GCC 12 omits the rounding when it vectorises several of these.
 double to_single(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;
@@ -74,11 +73,11 @@ struct Polygon {
 };
 
 struct Faces {
-    std::vector<Polygon> polygons;  // without those that are too many
-    std::size_t triangles = 0;      // into which all are to be cut
+    std::vector<Polygon> polygons;  // without excess ones
+    std::size_t triangles = 0;      // that all are cut into
 };
 
-// The lines that count, and of their words those that do.
+// The lines that matter, and their relevant words.
 Faces read_lines(const std::string& text,
                  const std::string& file_name,
                  const Vector3d& position_m,
@@ -121,7 +120,7 @@ Faces read_lines(const std::string& text,
     return faces;
 }
 
-// Before any polygon is cut: that takes the longer the more there are.
+// Checked before any polygon is cut, which takes the longer the more there are.
 void require_room(std::size_t triangles, const std::string& file_name) {
     if (triangles > 0 && triangles <= kMostTriangles) return;
     throw InputError("{}: found {}; allowed: 1 to {} triangles",
@@ -137,8 +136,8 @@ bool has_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 }
 
 // A polygon as triangles from one corner to the others: from one that sees them all, so that all
-// triangles are the same way round, and of these from the one with the shortest diagonals.
-// Triangles of no area are left out. None where no corner sees all others.
+// triangles have the same orientation, and among these from the one with the shortest diagonals.
+// Degenerate triangles are omitted. Empty if no corner sees all others.
 std::vector<Triangle> cut(const Mesh& mesh, std::vector<int> corners) {
     const auto at = [&](std::size_t i) {
         return mesh.vertices_m[static_cast<std::size_t>(corners[i])];

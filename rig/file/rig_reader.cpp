@@ -41,13 +41,13 @@ namespace fs = std::filesystem;
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kMetresPerMicrometre = 1e-6;
 
-// A thousand strobes, each written out, are a fiftieth of it.
+// A rig with a thousand strobes, each written out, has a fiftieth of this size.
 constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
 
-// Of all strobes together: what POV-Ray takes where the water is clear (pov_scene.cpp).
+// For all strobes together: POV-Ray's limit in clear water (pov_scene.cpp).
 constexpr std::size_t kMostCones = 100'000;
 
-// What a rig may hold. Wide enough for any sled, narrow enough to catch a slipped unit.
+// Limits of a rig. Wide enough for any sled, narrow enough to catch a wrong unit.
 constexpr Bounds kAltitudeM{0.001, 10000.0};
 constexpr Bounds kTiltDeg{-89.9, 89.9};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
@@ -78,7 +78,7 @@ constexpr Bounds kConeExponent{0.0, 1000.0};
 constexpr Bounds kFwhmDeg{1.0, 179.9};
 constexpr Bounds kTurnDeg{-360.0, 360.0};
 constexpr Bounds kOpticsMm{0.01, 100000.0};
-// Nearer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
+// Closer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
 // to 1e-4.
 constexpr Bounds kOpticsLengthMm{0.05, 100000.0};
 constexpr Bounds kWindowIndex{1.0, 3.0};
@@ -91,11 +91,11 @@ constexpr Bounds kEmitterMm{0.0, 10000.0};
 const std::string kOneKindOfBeam =
     "found together with another kind of beam; allowed: one of cones, fwhm_deg, table, or "
     "diffuser_mm with its lens";
-// An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
+// An object's size: POV-Ray skips blockers within a millimetre of what they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
 
-// What navigation means by an altitude.
+// How navigation measures altitude.
 void read_altitude_meaning(Section& sled, Mounting& mounting) {
     mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
     if (!sled.has("altitude_is")) return;
@@ -106,7 +106,7 @@ void read_altitude_meaning(Section& sled, Mounting& mounting) {
 }
 
 Sled read_sled(Section section, Mounting& mounting) {
-    // Before altitude_m, which they would else be taken for, misspelt.
+    // Before altitude_m, since they would otherwise be taken as its misspellings.
     read_altitude_meaning(section, mounting);
     const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
                     .pitch_rad = section.number_or("pitch_deg", kTiltDeg, 0.0) * kRadiansPerDegree,
@@ -120,7 +120,7 @@ Glass read_glass(Section& port) {
     return port.at_key("glass", [&] { return builtin_glass(name); });
 }
 
-// A dome's own keys, beside those of all ports.
+// A dome's own keys, besides those of all ports.
 Dome read_dome(Section& section) {
     Dome dome{.radius_m = section.number("radius_mm", kPortDistanceMm) * kMetresPerMillimetre};
     if (section.has("centre_mm")) {
@@ -159,7 +159,7 @@ PortWindow read_port(Section section) {
     return port;
 }
 
-// All but the glass is the calibration's.
+// Everything except the glass is the calibration's.
 PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated) {
     for (const std::string_view key :
          {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
@@ -204,7 +204,7 @@ Sensor read_response(Section& camera, RigFiles& files) {
         return read_response_table(camera.section("response", allowed), files);
     }
     const std::string name = camera.text("response", allowed);
-    // A file does not say whether it counts energy or photons, so its name alone will not do.
+    // A file does not say whether it counts energy or photons, so its name alone is not enough.
     if (names_a_file(name)) camera.found_but("response", allowed);
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
@@ -243,8 +243,8 @@ std::array<int, 2> read_size(Section& section,
     return size;
 }
 
-// One of: pitch and focal length, a field of view, a calibration. Of the latter two, only the ratio
-// of focal length and pitch counts.
+// One of: pitch and focal length, a field of view, a calibration. For the latter two, only the
+// ratio of focal length and pitch matters.
 void read_lens(Section& section,
                const std::optional<CameraCalibration>& calibration,
                Camera& camera) {
@@ -303,7 +303,7 @@ void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
     });
 }
 
-// Where the camera is on the vehicle.
+// The camera's position on the vehicle.
 void read_place(Section& camera, Mounting& mounting) {
     if (camera.has("position_m"))
         mounting.position_m = Eigen::Vector3d(camera.numbers<3>("position_m", kPositionM).data());
@@ -314,7 +314,7 @@ void read_place(Section& camera, Mounting& mounting) {
     }
 }
 
-// What no render needs, and surveys do.
+// Keys that no render needs, but surveys do.
 Readout read_readout(Section& camera, bool is_mono) {
     const auto optional = [&](std::string_view key, Bounds bounds) {
         return camera.has(key) ? std::optional(camera.number(key, bounds)) : std::nullopt;
@@ -340,8 +340,8 @@ Readout read_readout(Section& camera, bool is_mono) {
     return readout;
 }
 
-// The same view in fewer pixels, whose shape is kept: a row at the edge may be cut, or won, in
-// part.
+// The same view in fewer pixels, of the same shape: part of a row may be lost or gained at the
+// edge.
 void scale_down(double scale, Camera& camera) {
     const auto width_px = std::max(1, static_cast<int>(std::lround(scale * camera.width_px)));
     const double factor = static_cast<double>(camera.width_px) / width_px;
@@ -414,7 +414,7 @@ Cone read_cone(Section& section) {
     if (cone.edge_rad > cone.half_angle_rad) {
         section.found_but("edge_deg", "up to half_angle_deg, where the cone ends");
     }
-    // No cosine tells such an edge from a sharp one.
+    // No cosine distinguishes such an edge from a sharp one.
     if (std::cos(cone.half_angle_rad - cone.edge_rad) == std::cos(cone.half_angle_rad))
         cone.edge_rad = 0.0;
     section.refuse_unknown_keys();
@@ -543,8 +543,8 @@ Emitter read_emitter(Section& strobe) {
             .along_m = along_mm * kMetresPerMillimetre};
 }
 
-// Phi(lambda) = power S(lambda) of the table S: of a lamp whose flux is known, power is that over
-// the integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
+// Phi(lambda) = power S(lambda) of the table S: for a lamp of known flux, power is that over the
+// integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
 double read_power(Section& strobe, const Spectrum& spectrum) {
     const std::vector<std::string> kinds{"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"};
     std::string kind;
@@ -631,7 +631,7 @@ Mesh read_mesh_of(Section& object, RigFiles& files) {
     });
 }
 
-// The key says where the object is, and so where a message about that stands.
+// The key gives the object's place, and so the place for messages about it.
 constexpr std::string_view place_key(const std::string_view shape) {
     if (shape == "sphere") return "centre_m";
     return shape == "box" ? "from_m" : "file";
@@ -690,14 +690,13 @@ std::vector<Object> read_objects(Section& top,
     return objects;
 }
 
-// A refractive index stands in the list as the line between its range's ends: only the range
-// counts there.
+// A refractive index is in the list as the line between its range's ends: only the range matters.
 Spectrum range_of_index(const std::string& what, WavelengthRange range) {
     return {
         fmt::format("refractive index of {}", what), {range.first_nm, range.last_nm}, {1.0, 1.0}};
 }
 
-// Every curve that the images need, over the range that they integrate.
+// Every curve that the images need, over their range of integration.
 void require_tables_to_cover_the_range(const Rig& rig) {
     std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
     curves.push_back(&rig.seafloor.reflectance);

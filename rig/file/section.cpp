@@ -46,7 +46,7 @@ bool Section::has(std::string_view key) {
 
 const toml::node& Section::required(std::string_view key, const std::string& allowed) {
     if (has(key)) return *table_.get(key);
-    // Most often it is there, misspelt.
+    // Most often the key exists, but is misspelt.
     for (const auto& [name, node] : table_) {
         if (is_known(name.str())) continue;
         if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
@@ -172,7 +172,7 @@ std::string Section::one_line(const toml::node& node, std::string_view key) cons
 
 bool Section::is_within(const toml::node& node, Bounds bounds) {
     if (!node.is_number()) return false;
-    const auto value = node.value<double>();  // nothing: an integer that no double holds
+    const auto value = node.value<double>();  // empty: an integer that no double holds
     return value && *value >= bounds.least && *value <= bounds.most;  // false for NaN
 }
 

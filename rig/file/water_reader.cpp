@@ -135,7 +135,7 @@ Water read_water(Section section, RigFiles& files) {
     } else {
         read_tables(section, files, water);
     }
-    // Known keys, but not here.
+    // Known keys, but not for this water.
     for (const char* key : {"cdom_440_per_m", "particles"}) {
         if (section.has(key) && !section.has("chlorophyll_mg_m3"))
             section.fail_at(key, "found without chlorophyll_mg_m3; allowed: together with it");
