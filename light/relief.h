@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sea floor as one image sees it, in place of a plane: the point that each pixel shows, and the
-// normal there, in the sled's frame (rig/geometry.h). Where nothing is known the point is NaN.
+// The sea floor as one image sees it, instead of a plane: the point that each pixel shows, and the
+// normal there, in the sled's frame (rig/geometry.h). Unknown points are NaN.
 #pragma once
 
 #include "rig/geometry.h"
@@ -25,13 +25,13 @@ struct Relief {
                static_cast<std::size_t>(column);
     }
     [[nodiscard]] bool knows(std::size_t pixel) const { return std::isfinite(point_m[pixel].z()); }
-    // The plane through the point that touches the floor there.
+    // The plane that touches the floor at the point.
     [[nodiscard]] Plane plane(std::size_t pixel) const {
         return {.point_m = point_m[pixel].cast<double>(), .normal = normal[pixel].cast<double>()};
     }
 };
 
-// Every so many of `count` places from the first on, and the last: two at least.
+// Every nth of `count` places from the first on, and the last: at least two.
 [[nodiscard]] inline std::vector<int> every(int step, int count) {
     std::vector<int> places{0};
     for (int place = step; place < count - 1; place += step) places.push_back(place);

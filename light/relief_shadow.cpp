@@ -16,7 +16,7 @@ namespace {
 using Device = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
 using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
 
-// Of one thread: images are spread over threads, not their meshes.
+// Single-threaded: threads work on images, not on their meshes.
 const Device& device() {
     static const Device kDevice(rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
     if (!kDevice) throw RunError("cannot start Embree, which computes shadows");

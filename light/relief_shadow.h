@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the relief stands between a place of it and a lamp. The relief is a mesh through every
-// n-th of its pixels, n so that it is at most kShadowMesh_px wide; what is narrower casts no
-// shadow, and where the range jumps, the mesh is a wall down to what lies behind. Rays meet it by
-// Embree (I. Wald et al., ACM Transactions on Graphics 33(4), 2014).
+// Whether the relief blocks the way from one of its places to a lamp. The relief is a mesh through
+// every nth of its pixels, with n such that it is at most kShadowMesh_px wide; narrower features
+// cast no shadow, and where the range jumps, the mesh is a wall down to the background. Rays are
+// traced by Embree (I. Wald et al., ACM Transactions on Graphics 33(4), 2014).
 //
-// A ray begins kShadowBias of the point's distance off the floor, along its normal and towards the
-// lamp: ranges are not as even as floors are.
+// A ray starts kShadowBias of the point's distance off the floor, along its normal and towards the
+// lamp, since measured ranges are rougher than the floor.
 #pragma once
 
 #include "light/relief.h"

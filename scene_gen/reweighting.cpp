@@ -89,7 +89,7 @@ Rig covering_frames(Rig rig, const Manifest& manifest) {
     return rig;
 }
 
-// The fewest further wavelengths with which the tolerance would be kept, as the message says it.
+// The fewest further wavelengths with which the tolerance would be achieved, for the message.
 std::string lacking(const QuadratureFitter& fitter,
                     const Rig& changed,
                     const std::vector<FrameLight>& frames,

@@ -25,7 +25,8 @@ namespace aphotic {
 void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
                                double frame_error,
                                FrameFormat format) {
-    // Well held: also a pixel 64 times darker has all of its digits, of a PNG one 4 times darker.
+    // With this level, a pixel 64 times darker still has all of its digits, in a PNG one 4 times
+    // darker.
     const double well_log2 = format == FrameFormat::Exr ? -8.0 : -4.0;
     const int held = held_log2(format);
     const auto peak_log2 = [](const PlannedWavelength& w) {
@@ -147,7 +148,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (const FrameScene& scene : set.scenes) {
-        // Settings and includes change pixels as much as the scene does: all make the checksum.
+        // Settings and includes change pixels as much as the scene does: the checksum covers all.
         manifest.frames.push_back({.name = scene.name,
                                    .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
@@ -158,7 +159,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
 namespace {
 
-// POV-Ray takes what follows a '[' in the name of its settings for a section of them.
+// POV-Ray reads what follows a '[' in the name of its settings file as a section.
 void require_no_bracket(const std::filesystem::path& folder) {
     if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
     throw InputError(
@@ -177,9 +178,9 @@ void require_place_in_settings(const std::string& path) {
         path);
 }
 
-// As the settings name it that stand there, seen from the user's scene's folder.
+// As named by the settings there, seen from the user's scene's folder.
 std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
-    // Absolute, for a folder that is not there yet.
+    // Absolute, for a folder that does not exist yet.
     const std::filesystem::path here = std::filesystem::absolute(povray);
     return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
 }

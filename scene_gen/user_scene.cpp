@@ -103,8 +103,8 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
 
 namespace {
 
-// What stands in quotes on one line. No regular expression: on a long line, as of a mesh, the
-// library's run out of stack.
+// The quoted strings within one line. Not by regular expression: on a long line, as in a mesh, the
+// library's overflows the stack.
 std::vector<std::string> quoted_in(const std::string& text) {
     std::vector<std::string> all;
     std::size_t open = text.find('"');
@@ -123,7 +123,7 @@ bool is_language(const fs::path& file) {
     return std::ranges::find(kLanguage, file.extension().string()) != kLanguage.end();
 }
 
-// The scene, and what it or a file so found names that is there.
+// The scene, and the existing files that it or a file so found names.
 std::set<fs::path> files_of(const fs::path& scene_file) {
     std::set<fs::path> seen;
     std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
@@ -145,7 +145,7 @@ std::set<fs::path> files_of(const fs::path& scene_file) {
 
 std::string digest_of_scene(const fs::path& scene_file) {
     const fs::path folder = fs::absolute(scene_file).lexically_normal().parent_path();
-    std::map<std::string, std::string> digests;  // in an order that no listing changes
+    std::map<std::string, std::string> digests;  // in an order that does not depend on the listing
     for (const fs::path& file : files_of(scene_file)) {
         digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
     }
