@@ -34,7 +34,7 @@ fs::path folder_of(const fs::path& file) {
 
 // How much of the file's name goes into a temporary's name: all of it, if the longest name that
 // file systems allow has room.
-std::string told_of(const fs::path& file) {
+std::string kept_name_of(const fs::path& file) {
     constexpr std::size_t kLongestName = 255;
     constexpr std::size_t kOurs = 48;  // dots, boot, numbers, process and "part"
     constexpr std::size_t kDigest = 16;
@@ -126,7 +126,7 @@ AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path))
     // The extension stays last: some writers choose their format by it.
     temporary_ = final_path_;
     temporary_.replace_filename(fmt::format(".{}.{}-{}-{}.part{}",
-                                            told_of(final_path_),
+                                            kept_name_of(final_path_),
                                             kOurs.boot,
                                             kOurs.numbers,
                                             ::getpid(),
@@ -158,9 +158,8 @@ void remove_abandoned_files(const fs::path& folder) {
 
 void remove_abandoned_of(const fs::path& file) {
     remove_abandoned(folder_of(file),
-                     [name = told_of(file) + file.extension().string()](const std::string& told) {
-                         return told == name;
-                     });
+                     [name = kept_name_of(file) + file.extension().string()](
+                         const std::string& kept) { return kept == name; });
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

@@ -107,9 +107,9 @@ void require_one_source(const CLI::App& app) {
 }
 
 // As WORD=SPREAD, where the unit may follow: aim=2deg, altitude=0.1m.
-std::map<std::string, double> priors_in(const std::vector<std::string>& told) {
+std::map<std::string, double> priors_in(const std::vector<std::string>& given) {
     std::map<std::string, double> priors;
-    for (const std::string& one : told) {
+    for (const std::string& one : given) {
         const std::size_t at = one.find('=');
         const std::string word = one.substr(0, at);
         std::string_view number = std::string_view(one).substr(std::min(at, one.size() - 1) + 1);

@@ -24,7 +24,7 @@ struct PlannedRender {
     std::optional<ManifestModel> model{};  // of water that scatters
 };
 
-// Reads the rig, surveys the user's own scene where there is one, plans, and estimates what the
+// Reads the rig, probes the user's scene if there is one, plans, and estimates what the
 // model leaves out. Messages name the rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 

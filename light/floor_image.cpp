@@ -66,7 +66,7 @@ class FloorTiles : public TileLight {
     static bool is_right(const PlaceLight& light, const TileCheck& check) {
         if (is_in_doubt(light, light.signals)) return false;
         for (std::size_t c = 0; c < kChannels; ++c) {
-            if (!(std::abs(check.told[c] - light.signals[c]) <=
+            if (!(std::abs(check.interpolated[c] - light.signals[c]) <=
                   kTileError / 3.0 * light.signals[c]))
                 return false;
         }

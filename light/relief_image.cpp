@@ -185,10 +185,11 @@ void ReliefPainter::fill(const Cell& cell) {
         look(column, row);
         const std::array<float, 4> shares = shares_at(cell, column, row);
         for (std::size_t c = 0; c < kChannels; ++c) {
-            float told = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
+            float interpolated = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k)
+                interpolated += shares[k] * sample(c, at[k]);
             const float there = sample(c, relief_.at(column, row));
-            is_right &= std::abs(told - there) <= kReliefError * there;
+            is_right &= std::abs(interpolated - there) <= kReliefError * there;
         }
     }
     for_each_pixel(cell, relief_, [&](int x, int y) {
@@ -201,9 +202,10 @@ void ReliefPainter::fill(const Cell& cell) {
         const std::array<float, 4> shares = shares_at(cell, x, y);
         found_.seen[pixel] = found_.seen[at[0]];
         for (std::size_t c = 0; c < kChannels; ++c) {
-            float told = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
-            sample(c, pixel) = told;
+            float interpolated = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k)
+                interpolated += shares[k] * sample(c, at[k]);
+            sample(c, pixel) = interpolated;
         }
     });
 }

@@ -60,7 +60,7 @@ using PixelPlace = std::array<double, 2>;
 
 // A polynomial's value at a place between its points.
 struct TileCheck {
-    PlaceSignals told{};
+    PlaceSignals interpolated{};
     PlaceSignals last_degrees{};  // tile_fit.h
     PlaceSignals signals{};       // the whole there, as far as it is known
 };
@@ -202,13 +202,15 @@ class TilePainter {
             }
             const auto [i, j] = kTileChecks[k];
             for (std::size_t one = 0; one < all.size(); ++one) {
-                Polynomial& told = all[one];
-                TileCheck check{.told = {}, .last_degrees = told.last_degrees, .signals = signals};
+                Polynomial& polynomial = all[one];
+                TileCheck check{.interpolated = {},
+                                .last_degrees = polynomial.last_degrees,
+                                .signals = signals};
                 for (std::size_t c = 0; c < planes_.size(); ++c)
-                    check.told[c] =
-                        down.to_gaps.row(j) * told.nodes[c] * across.to_gaps.row(i).transpose();
-                told.is_right =
-                    told.is_right && light_.is_right(Light::of_lane(found[one], k - first), check);
+                    check.interpolated[c] = down.to_gaps.row(j) * polynomial.nodes[c] *
+                                            across.to_gaps.row(i).transpose();
+                polynomial.is_right = polynomial.is_right &&
+                                      light_.is_right(Light::of_lane(found[one], k - first), check);
             }
         }
     }

@@ -252,7 +252,7 @@ class VeilTiles : public TileLight {
     [[nodiscard]] bool is_right(const Found& found, const TileCheck& check) const {
         for (std::size_t c = 0; c < map_.planes_; ++c) {
             const double most = tolerance_ * check.signals[c];
-            if (!(std::abs(check.told[c] - found.signals[c]) <= kOffBetween * most &&
+            if (!(std::abs(check.interpolated[c] - found.signals[c]) <= kOffBetween * most &&
                   check.last_degrees[c] <= kLastDegrees * most))
                 return false;
         }

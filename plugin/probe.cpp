@@ -95,12 +95,12 @@ bool is_lit(float sample) {
     return sample > 0.0F;
 }
 
-class Survey {
+class SceneProbe {
   public:
-    Survey(const PovRay& povray,
-           const Rig& rig,
-           const fs::path& scene_file,
-           const SurveyOptions& options)
+    SceneProbe(const PovRay& povray,
+               const Rig& rig,
+               const fs::path& scene_file,
+               const ProbeOptions& options)
         : povray_(povray), rig_(rig), options_(options) {
         scene_.file = fs::absolute(scene_file).lexically_normal();
         if (!fs::is_regular_file(scene_.file)) {
@@ -118,10 +118,10 @@ class Survey {
         }
         SceneOptions settings;
         settings.ini_lines = options_.ini_lines;
-        write_text_file(folder_.path() / "survey.ini", render_ini(rig_, settings));
+        write_text_file(folder_.path() / "probe.ini", render_ini(rig_, settings));
         const int longer = std::max(rig_.camera.width_px, rig_.camera.height_px);
         const auto scaled = [&](int size_px) {
-            return std::max(1, std::min(size_px, size_px * kSurveyPixels / longer));
+            return std::max(1, std::min(size_px, size_px * kProbePixels / longer));
         };
         width_px_ = scaled(rig_.camera.width_px);
         height_px_ = scaled(rig_.camera.height_px);
@@ -149,7 +149,7 @@ class Survey {
   private:
     struct Task {
         std::string name;
-        SurveyFrame frame;
+        ProbeFrame frame;
     };
     struct Running {
         Task task;
@@ -205,7 +205,7 @@ class Survey {
         return {.executable = povray_.executable,
                 .arguments = std::move(arguments),
                 .folder = scene_.file.parent_path(),
-                .environment = {{"POVINI", (folder_.path() / "survey.ini").string()}},
+                .environment = {{"POVINI", (folder_.path() / "probe.ini").string()}},
                 .log = file_of(task, ".log"),
                 .stall_s = options_.stall_s};
     }
@@ -261,7 +261,7 @@ class Survey {
             while (started < tasks.size() && running.size() < jobs) {
                 const Task& task = tasks[started++];
                 write_text_file(file_of(task, ".pov"),
-                                survey_sdl(rig_, scene_.file.filename().string(), task.frame));
+                                probe_sdl(rig_, scene_.file.filename().string(), task.frame));
                 running.push_back({.task = task, .process = Process(request_for(task))});
             }
             for (auto at = running.begin(); at != running.end();) {
@@ -502,7 +502,7 @@ class Survey {
     }
 
     // Fills in what is not known yet of each pixel, and counts what it leaves.
-    void take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit, Unmeasured& left) {
+    void take_in(const Picture& picture, const ProbeFrame& frame, Lit& lit, Unmeasured& left) {
         constexpr double kLeastNormal = 0x1p-14;      // of half floats: under it they lose digits
         constexpr double kLeastThatCounts = 0x1p-20;  // 1e-8 of the peak that is aimed at
         constexpr double kLeastLoss = 0x1p-5;         // tells the path to 3 % by half floats
@@ -639,7 +639,7 @@ class Survey {
 
     const PovRay& povray_;
     const Rig& rig_;
-    const SurveyOptions& options_;
+    const ProbeOptions& options_;
     ScratchFolder folder_;
     UserScene scene_;
     int width_px_ = 1;
@@ -656,12 +656,12 @@ class Survey {
 
 }  // namespace
 
-UserScene survey_scene(const PovRay& povray,
-                       const Rig& rig,
-                       const fs::path& scene_file,
-                       const SurveyOptions& options) {
+UserScene probe_scene(const PovRay& povray,
+                      const Rig& rig,
+                      const fs::path& scene_file,
+                      const ProbeOptions& options) {
     require_openexr(povray, "which the probe of a scene of your own needs");
-    return Survey(povray, rig, scene_file, options).run();
+    return SceneProbe(povray, rig, scene_file, options).run();
 }
 
 }  // namespace aphotic

@@ -33,7 +33,7 @@
 
 namespace aphotic {
 
-struct SurveyOptions {
+struct ProbeOptions {
     int jobs = 1;
     std::vector<std::string> library_paths;  // beside the user's own
     std::function<void(double)> progress{};  // share of the work
@@ -42,17 +42,17 @@ struct SurveyOptions {
     bool unchecked = false;  // radiosity, photons and media void the promise and are not refused
 };
 
-// Pixels of a survey along the longer side of the image.
-inline constexpr int kSurveyPixels = 160;
+// Pixels of the probe along the longer side of the image.
+inline constexpr int kProbePixels = 160;
 
 // Throws InputError for a scene that cannot be rendered spectrally, saying what of it: no water or
 // no camera of ours in it, lights that are not strobes of aphotic.inc, a lamp that the rig does not
 // have, a spectrum that is not found, nothing lit; radiosity, photons or media of its own, unless
 // unchecked. Errors of POV-Ray's parser come as it says them,
 // with file and line. A scene that changes meanwhile is a RunError.
-[[nodiscard]] UserScene survey_scene(const PovRay& povray,
-                                     const Rig& rig,
-                                     const std::filesystem::path& scene_file,
-                                     const SurveyOptions& options);
+[[nodiscard]] UserScene probe_scene(const PovRay& povray,
+                                    const Rig& rig,
+                                    const std::filesystem::path& scene_file,
+                                    const ProbeOptions& options);
 
 }  // namespace aphotic

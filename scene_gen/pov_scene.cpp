@@ -581,7 +581,7 @@ std::string unplanned_sdl(const Rig& rig,
 
 }  // namespace
 
-std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
+std::string probe_sdl(const Rig& rig, const std::string& scene_name, const ProbeFrame& frame) {
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
     if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
     if (frame.is_coarse_in_radiosity) sdl += "#declare Aphotic_Coarse_Radiosity = true;\n";

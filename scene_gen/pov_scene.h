@@ -97,7 +97,7 @@ inline constexpr double kLeastInMetres_m = 0x1p-6;
 inline constexpr int kMostLightsInMedia = 1024;
 
 // A frame of the probe (plugin/probe.h): everything white, all lamps alike.
-struct SurveyFrame {
+struct ProbeFrame {
     Channels attenuation_per_m{};
     int exposure_log2 = 0;
     Channels strobes{1.0, 1.0, 1.0};      // their brightness in each channel
@@ -105,9 +105,9 @@ struct SurveyFrame {
     bool is_coarse_in_radiosity = false;  // of a scene that has it: almost none
     bool dims_lamps = true;               // false: the water attenuates only the camera's leg
 };
-[[nodiscard]] std::string survey_sdl(const Rig& rig,
-                                     const std::string& scene_name,
-                                     const SurveyFrame& frame);
+[[nodiscard]] std::string probe_sdl(const Rig& rig,
+                                    const std::string& scene_name,
+                                    const ProbeFrame& frame);
 
 // A frame that shows how far each pixel of the image sees in a user's scene: nothing shines, no
 // texture is evaluated, and a fog leaves 1 - exp(-D / fog_m) in red and nothing in green and blue,

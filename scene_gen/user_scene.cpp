@@ -45,8 +45,8 @@ PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
     PathRange range{.shortest_m = std::numeric_limits<double>::infinity(), .longest_m = 0.0};
     for (const auto& pixel : pixels) {
         for (const UserScene::Lit& lit : pixel) {
-            range.shortest_m = std::min(range.shortest_m, lit.path_m / kSurveyRoom);
-            range.longest_m = std::max(range.longest_m, lit.path_m * kSurveyRoom);
+            range.shortest_m = std::min(range.shortest_m, lit.path_m / kProbeRoom);
+            range.longest_m = std::max(range.longest_m, lit.path_m * kProbeRoom);
         }
     }
     return range.longest_m > 0.0 ? range : PathRange{};

@@ -49,9 +49,9 @@ struct UserScene {
 [[nodiscard]] double measured_path_m(double dimmer, double brighter, double difference_per_m);
 
 // Margin on both sides of the measured paths, for what lies between the probe's pixels.
-inline constexpr double kSurveyRoom = 1.05;
+inline constexpr double kProbeRoom = 1.05;
 
-// Of what the pixels show, with kSurveyRoom; both zero when nothing is lit.
+// Of what the pixels show, with kProbeRoom; both zero when nothing is lit.
 [[nodiscard]] PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels);
 
 // The spectra by the names that the scene gives them: a CSV file next to the scene, one of the

@@ -63,7 +63,7 @@ bool says_srgb(const std::filesystem::path& file) {
 }
 
 // In a unit that is the same for files that tell of the same numbers; none where there is none.
-std::optional<double> exposure_told(const ShotExposure& shot) {
+std::optional<double> stated_exposure(const ShotExposure& shot) {
     if (!shot.time_s && !shot.iso && !shot.f_number) return std::nullopt;
     const double stop = shot.f_number.value_or(1.0);
     return shot.time_s.value_or(1.0) * shot.iso.value_or(1.0) / (stop * stop);
@@ -98,7 +98,7 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     look.map_mean = means_of(map);
     look.frame = frame_look(taken.raw, taken.levels, map);
     look.says_srgb = says_srgb(file.source);
-    if (taken.tags) look.told = exposure_told(exposure_of(*taken.tags));
+    if (taken.tags) look.stated_exposure = stated_exposure(exposure_of(*taken.tags));
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(*sled) : std::nullopt) {
         look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));

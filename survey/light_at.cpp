@@ -34,15 +34,15 @@ MapAsRadians map_as_radians(const Rig& rig,
         return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
     };
     if (!navigation) return {};
-    const auto in_radians = [told = navigation->told()](Sled sled) {
-        if (told.pitch) sled.pitch_rad /= kRadiansPerDegree;
-        if (told.roll) sled.roll_rad /= kRadiansPerDegree;
+    const auto in_radians = [given = navigation->given()](Sled sled) {
+        if (given.pitch) sled.pitch_rad /= kRadiansPerDegree;
+        if (given.roll) sled.roll_rad /= kRadiansPerDegree;
         return sled;
     };
     bool is_level = true;
     for (Sled& sled : sleds) {
-        if (navigation->told().pitch && !is_small(sled.pitch_rad)) return {};
-        if (navigation->told().roll && !is_small(sled.roll_rad)) return {};
+        if (navigation->given().pitch && !is_small(sled.pitch_rad)) return {};
+        if (navigation->given().roll && !is_small(sled.roll_rad)) return {};
         const Sled other = in_radians(sled);
         if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
         sled = other;

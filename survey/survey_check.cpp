@@ -728,20 +728,20 @@ nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions) {
 
 std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks) {
     constexpr double kOff = 0.2;
-    std::vector<double> told;
+    std::vector<double> exposures;
     std::vector<double> levels;
     for (const ImageLook& look : looks) {
-        if (!look.told || !(*look.told > 0.0)) continue;
-        told.push_back(std::log(*look.told));
+        if (!look.stated_exposure || !(*look.stated_exposure > 0.0)) continue;
+        exposures.push_back(std::log(*look.stated_exposure));
         levels.push_back(look.level);
     }
-    const Line line = line_through(told, levels);
+    const Line line = line_through(exposures, levels);
     if (std::abs(line.slope - 1.0) < std::max(kOff, kStandardErrors * line.error))
         return std::nullopt;
     return Suspicion{.about = "exposure",
                      .what = fmt::format("the Exif exposures vary {:.3g}-fold, but the images' "
                                          "levels go as their power {:.2g}; expected: 1",
-                                         fold_of(told),
+                                         fold_of(exposures),
                                          line.slope)};
 }
 

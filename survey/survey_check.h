@@ -109,10 +109,10 @@ struct ImageLook {
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
     FrameLook frame;
-    bool says_srgb = false;      // its file
-    LightCells cells{};          // what strobes lit it; where that is judged
-    double level = 0.0;          // its own, over the survey's, where images have an exposure each
-    std::optional<double> told;  // its exposure, by its Exif, in a unit of the survey's own
+    bool says_srgb = false;  // its file
+    LightCells cells{};      // what strobes lit it; where that is judged
+    double level = 0.0;      // its own, over the survey's, where images have an exposure each
+    std::optional<double> stated_exposure;  // from its Exif, relative to the survey's others
     // Of images with a depth map: its median along the axis, and how like the image is to the map
     // of light by the other convention, and to that on the navigation's plane.
     std::optional<double> depth_m{};

@@ -56,7 +56,7 @@ double soft_edge(const Cone& cone, double cosine) {
 
 // The integral of cos^n(theta) up to an angle. 1 - cos^(n + 1) is a small difference for narrow
 // cones: expm1 and log1p keep its digits.
-double lobe_flux(double half_angle_rad, double exponent) {
+double cone_flux(double half_angle_rad, double exponent) {
     if (exponent == 1.0) {
         const double sin_gamma = std::sin(half_angle_rad);
         return std::numbers::pi * sin_gamma * sin_gamma;
@@ -69,8 +69,8 @@ double lobe_flux(double half_angle_rad, double exponent) {
 
 // The integral for the cone cos^n(theta) S(theta). Over the angle, because cos^n of a soft edge
 // that reaches 90 degrees has unbounded derivatives in the cosine.
-double lobe_flux(const Cone& cone) {
-    if (cone.edge_rad == 0.0) return lobe_flux(cone.half_angle_rad, cone.exponent);
+double cone_flux(const Cone& cone) {
+    if (cone.edge_rad == 0.0) return cone_flux(cone.half_angle_rad, cone.exponent);
     using Gauss = boost::math::quadrature::gauss<double, 30>;
     const double full_rad = cone.half_angle_rad - cone.edge_rad;
     const auto ring = [&](double theta_rad) {
@@ -78,13 +78,13 @@ double lobe_flux(const Cone& cone) {
         return 2.0 * std::numbers::pi * std::sin(theta_rad) * falloff(cosine, cone.exponent) *
                soft_edge(cone, cosine);
     };
-    return lobe_flux(full_rad, cone.exponent) +
+    return cone_flux(full_rad, cone.exponent) +
            Gauss::integrate(ring, full_rad, cone.half_angle_rad);
 }
 
 // A_k.
 double axial_intensity(const Cone& cone, ConeWeights weights) {
-    return weights == ConeWeights::Literal ? cone.weight : cone.weight / lobe_flux(cone);
+    return weights == ConeWeights::Literal ? cone.weight : cone.weight / cone_flux(cone);
 }
 
 Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
@@ -448,7 +448,7 @@ double flux_of(const Beam& beam) {
     if (is_pattern(beam)) return 1.0;  // per_flux accounts for it
     double flux = 0.0;
     for (const Cone& cone : beam.cones) {
-        flux += beam.weights == ConeWeights::Flux ? cone.weight : cone.weight * lobe_flux(cone);
+        flux += beam.weights == ConeWeights::Flux ? cone.weight : cone.weight * cone_flux(cone);
     }
     return flux;
 }

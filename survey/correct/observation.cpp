@@ -44,7 +44,7 @@ struct Selection {
 
 Selection selected(const Survey& survey, const ObservationOptions& options) {
     constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
-    const ToldAngles known = survey.navigation->known();
+    const GivenAngles known = survey.navigation->known();
     Selection selection;
     for (const ImageFile& file : survey.files) {
         try {

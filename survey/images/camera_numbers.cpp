@@ -138,8 +138,8 @@ nlohmann::ordered_json to_json(const CameraNumbers& camera) {
         json["exposure"] = {{"by", "model"}};
         return json;
     }
-    const auto number = [](std::optional<double> told) {
-        return told ? nlohmann::ordered_json(*told) : nlohmann::ordered_json();
+    const auto number = [](std::optional<double> value) {
+        return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
     };
     json["exposure"] = {{"by", camera.exposure_by == ExposureBy::Exif ? "exif" : "flash"},
                         {"time_s", number(camera.reference.time_s)},

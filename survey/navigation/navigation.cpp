@@ -136,9 +136,9 @@ std::string fault_of(const Sled& sled) {
 
 Navigation::Navigation(std::string source,
                        const std::vector<ImagePose>& poses,
-                       ToldAngles told,
+                       GivenAngles given,
                        ImagesKnownBy known_by)
-    : source_(std::move(source)), told_(told), known_(told), known_by_(known_by) {
+    : source_(std::move(source)), given_(given), known_(given), known_by_(known_by) {
     for (const ImagePose& pose : poses) {
         if (pose.image.empty()) {
             if (nameless_line_ == 0) nameless_line_ = pose.line;

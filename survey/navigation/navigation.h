@@ -63,7 +63,7 @@ struct ImagePose {
 
 // Whether the source tells the angles, for the whole survey; else poses have another's, as the
 // rig's.
-struct ToldAngles {
+struct GivenAngles {
     bool pitch = true;
     bool roll = true;
 };
@@ -79,7 +79,7 @@ class Navigation {
     // source stands in messages, such as the file's name.
     Navigation(std::string source,
                const std::vector<ImagePose>& poses,
-               ToldAngles told = {},
+               GivenAngles given = {},
                ImagesKnownBy known_by = ImagesKnownBy::Name);
 
     // The pose of an image file. An InputError when there is none, it has a fault, or its numbers
@@ -95,10 +95,10 @@ class Navigation {
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
     // All that it knows a pose of, as the source has them, in its order.
     [[nodiscard]] std::vector<std::string> images() const;
-    [[nodiscard]] const ToldAngles& told() const { return told_; }
+    [[nodiscard]] const GivenAngles& given() const { return given_; }
 
     // Which angles poses have from anywhere: the source, or a rig that stands in for it.
-    [[nodiscard]] const ToldAngles& known() const { return known_; }
+    [[nodiscard]] const GivenAngles& known() const { return known_; }
     void take_angles_of_rig() { known_ = {.pitch = true, .roll = true}; }
 
     // None when no reader told.
@@ -113,8 +113,8 @@ class Navigation {
     [[nodiscard]] std::string key_of(const std::string& image) const;
 
     std::string source_;
-    ToldAngles told_;
-    ToldAngles known_;
+    GivenAngles given_;
+    GivenAngles known_;
     ImagesKnownBy known_by_;
     std::optional<NavigationNotes> notes_{};
     std::vector<std::string> warnings_{};

@@ -256,12 +256,12 @@ bool is_navigation_header(const HeaderRequest& request, const Header& header) {
 
 NavigationColumns navigation_columns(const HeaderRequest& request, const Header& header) {
     require_given(request, header);
-    const NavigationColumns told = given_columns(header, request.given);
-    std::optional<NavigationColumns> columns = recognised(told, formats_of(request), header);
-    if (!columns) refuse_header(request, header, told);
+    const NavigationColumns given = given_columns(header, request.given);
+    std::optional<NavigationColumns> columns = recognised(given, formats_of(request), header);
+    if (!columns) refuse_header(request, header, given);
     // One of them says where the images are; which, --columns may choose.
     auto& [image, time, altitude, pitch, roll] = columns->places;
-    if (image && told.place(NavigationField::Time) && !told.place(NavigationField::Image))
+    if (image && given.place(NavigationField::Time) && !given.place(NavigationField::Image))
         image.reset();
     if (image) time.reset();
     require_known_angles(request, header, *columns);

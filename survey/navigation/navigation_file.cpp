@@ -157,7 +157,7 @@ Navigation navigation_by_time(const NavigationTable& table,
                               const NavigationOptions& options,
                               const std::vector<ImageFile>& files,
                               const Mounting& mounting,
-                              ToldAngles told,
+                              GivenAngles given,
                               NavigationNotes notes) {
     if (!options.time_mask.empty())
         naming("--image-time", [&] { require_time_mask(options.time_mask); });
@@ -189,7 +189,7 @@ Navigation navigation_by_time(const NavigationTable& table,
         pose.sled = track.at(time.time_s + options.clock_offset_s);
     };
     Navigation navigation(
-        options.source, poses_of(files, options.jobs, read), told, ImagesKnownBy::Path);
+        options.source, poses_of(files, options.jobs, read), given, ImagesKnownBy::Path);
     navigation.note(std::move(notes));
     if (without_zone > 0) {
         navigation.warn(fmt::format(
@@ -213,14 +213,14 @@ Navigation navigation_of_table(const NavigationTable& table,
         if (columns.places.at(field))
             notes.columns.emplace_back(kNavigationFields.at(field), columns.names.at(field));
     }
-    const ToldAngles told{.pitch = columns.place(NavigationField::Pitch).has_value(),
-                          .roll = columns.place(NavigationField::Roll).has_value()};
+    const GivenAngles given{.pitch = columns.place(NavigationField::Pitch).has_value(),
+                            .roll = columns.place(NavigationField::Roll).has_value()};
     if (columns.is_track())
-        return navigation_by_time(table, options, files, mounting, told, std::move(notes));
+        return navigation_by_time(table, options, files, mounting, given, std::move(notes));
     require_no_times(options);
     std::vector<ImagePose> poses;
     for (const NavigationRow& row : table.rows) poses.push_back(row.pose);
-    Navigation navigation(options.source, poses, told);
+    Navigation navigation(options.source, poses, given);
     navigation.note(std::move(notes));
     return navigation;
 }
@@ -239,9 +239,9 @@ void require_angles(const Navigation& navigation,
                     const NavigationOptions& options,
                     const Mounting& mounting,
                     bool has_rig) {
-    const ToldAngles told = navigation.told();
-    if (told.pitch && told.roll) return;
-    const std::string_view lacking = told.pitch ? "roll" : told.roll ? "pitch" : "pitch and roll";
+    const GivenAngles given = navigation.given();
+    if (given.pitch && given.roll) return;
+    const std::string_view lacking = given.pitch ? "roll" : given.roll ? "pitch" : "pitch and roll";
     if (is_mounted_apart(mounting)) {
         throw InputError(
             "{}: has no {}; needed, since the rig's position_m and orientation_deg place the "
@@ -282,8 +282,8 @@ Navigation navigation_of_ifdo(std::string_view text,
     if (rig != nullptr) navigation.take_angles_of_rig();
     NavigationNotes notes{.format = "iFDO", .mounting = camera};
     notes.columns.emplace_back("altitude_m", kIfdoHeight);
-    if (navigation.told().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
-    if (navigation.told().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
+    if (navigation.given().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
+    if (navigation.given().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
     navigation.note(std::move(notes));
     // JSON has a bracket at its end; YAML may be cut anywhere.
     if (!text.ends_with('\n') && !text.ends_with('}')) {

@@ -203,10 +203,10 @@ void make_truth_by_lightmaps(const SimulatedSurvey& survey) {
 
 void finish_survey(const SimulatedSurvey& survey) {
     for_missing(survey, "raw", [&](const Leg& leg) { write_raw(survey, leg); });
-    const std::vector<Leg> told = of_vehicle(survey.legs, survey.rig.mounting);
-    write_text_file(survey.folder / "navigation.txt", navigation_text(told, ".tif"));
+    const std::vector<Leg> vehicle_legs = of_vehicle(survey.legs, survey.rig.mounting);
+    write_text_file(survey.folder / "navigation.txt", navigation_text(vehicle_legs, ".tif"));
     write_text_file(survey.folder / "navigation-measured.txt",
-                    navigation_text(as_measured(told, survey.errors, survey.seed), ".tif"));
+                    navigation_text(as_measured(vehicle_legs, survey.errors, survey.seed), ".tif"));
     if (survey.truth.poses)
         write_colmap(survey.folder / "colmap", survey.rig.camera, survey.legs, ".tif");
     write_text_file(survey.folder / kSurveyNotes,

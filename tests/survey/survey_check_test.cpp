@@ -532,16 +532,15 @@ TEST(SurveyCheck, ExposuresThatLevelsDoNotFollowAreTold) {
     std::vector<ImageLook> looks(16);
     for (std::size_t i = 0; i < looks.size(); ++i) {
         constexpr std::array kFactors{1.0, 1.14, 1.4, 2.0};
-        looks[i].told = 8.0 / static_cast<double>(1U << i % 4);
+        looks[i].stated_exposure = 8.0 / static_cast<double>(1U << i % 4);
         looks[i].level = -std::log(kFactors.at(i % 4));
     }
     const auto doubt = exposure_doubt(looks);
     ASSERT_TRUE(doubt.has_value());
-    EXPECT_TRUE(
-        has(doubt->what, "vary 8-fold, but the images' levels go as their power 0.3"));
-    for (ImageLook& look : looks) look.level = std::log(*look.told);
+    EXPECT_TRUE(has(doubt->what, "vary 8-fold, but the images' levels go as their power 0.3"));
+    for (ImageLook& look : looks) look.level = std::log(*look.stated_exposure);
     EXPECT_FALSE(exposure_doubt(looks).has_value());
-    for (ImageLook& look : looks) look.told.reset();
+    for (ImageLook& look : looks) look.stated_exposure.reset();
     EXPECT_FALSE(exposure_doubt(looks).has_value());
 }
 

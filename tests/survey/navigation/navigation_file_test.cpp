@@ -79,7 +79,7 @@ TEST(NavigationFile, BiiglesCsvInAnyLetterCaseAndByOtherNames) {
         "b.jpg,2016-12-19 12:27:01,52.220,28.123,-1500,,2.6,180\n");
     EXPECT_EQ(nav.pose_of("a.jpg").sled.altitude_m, 10.5);
     EXPECT_EQ(nav.pose_of("a.jpg").sled.pitch_rad, kRigSled.pitch_rad);
-    EXPECT_FALSE(nav.told().pitch || nav.told().roll);
+    EXPECT_FALSE(nav.given().pitch || nav.given().roll);
     EXPECT_NE(fault_of_image(nav, "b.jpg"), "nothing was said");
     const Navigation sub = parsed(
         "file,SUB_datetime,SUB_altitude,SUB_distance,SUB_heading\n"
@@ -154,7 +154,7 @@ TEST(NavigationFile, SquidlesNavdata) {
     EXPECT_EQ(nav.notes()->format, "SQUIDLE+'s CSV");
     const Navigation level = parsed("key,pose.alt\nPR_1,2.5\n");
     EXPECT_EQ(level.pose_of("PR_1.png").sled.altitude_m, 2.5);
-    EXPECT_FALSE(level.told().roll);
+    EXPECT_FALSE(level.given().roll);
 }
 
 TEST(NavigationFile, HabCamsImgWithAndWithoutAHeader) {

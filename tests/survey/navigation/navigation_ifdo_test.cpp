@@ -39,14 +39,14 @@ TEST(NavigationIfdo, HeightsArePlumb) {
     EXPECT_NEAR(sled.roll_rad, 20.0 * kDegree, kDouble);
     const double down = std::cos(30.0 * kDegree) * std::cos(20.0 * kDegree);
     EXPECT_NEAR(sled.altitude_m * down, 2.0, kDouble);
-    EXPECT_TRUE(navigation.told().pitch);
+    EXPECT_TRUE(navigation.given().pitch);
 }
 
 TEST(NavigationIfdo, AnglesThatNoImageHasAreTheRigs) {
     const Navigation navigation = of("image-meters-above-ground: 2", "a.tif: {}, b.tif: [{}]");
     EXPECT_EQ(navigation.size(), 2U);
-    EXPECT_FALSE(navigation.told().pitch);
-    EXPECT_FALSE(navigation.told().roll);
+    EXPECT_FALSE(navigation.given().pitch);
+    EXPECT_FALSE(navigation.given().roll);
     for (const char* image : {"a.tif", "b.tif"}) {
         const Sled& sled = navigation.pose_of(image).sled;
         EXPECT_EQ(sled.pitch_rad, kRigSled.pitch_rad);

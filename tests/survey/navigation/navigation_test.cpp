@@ -26,7 +26,7 @@ TEST(Navigation, IsMadeOfPoses) {
     EXPECT_EQ(track.size(), 2U);
     EXPECT_EQ(track.pose_of("raw/a.png").sled.roll_rad, -0.2);
     EXPECT_EQ(track.pose_of("b.dng").sled.altitude_m, 3.0);
-    EXPECT_TRUE(track.told().pitch && track.told().roll);
+    EXPECT_TRUE(track.given().pitch && track.given().roll);
 }
 
 // Of no line: there is none.
