@@ -69,8 +69,8 @@ PageTable figures(const DesignRequest& request, const DesignResult& result) {
     return table;
 }
 
-// Bright pixels over the mean in steps of a tenth, whose borders are contours: of the channel that
-// is the least even.
+// Bright pixels over the mean in steps of a tenth, whose borders are contours: for the least even
+// channel.
 std::string steps_png(const Lightmap& map) {
     constexpr double kSteps = 10.0;   // of the mean
     constexpr double kWhitest = 2.0;  // times the mean
@@ -121,7 +121,7 @@ PageFigures pair_of(std::string before, std::string after, int width_px, int hei
 }
 
 std::vector<PagePart> light(const Rig& rig, const DesignResult& result) {
-    // The start's own worst pose, of both.
+    // The start's own worst pose, for both.
     const auto worst = std::ranges::min_element(
         result.start.poses, {}, [](const JudgedPose& pose) { return pose.figures.evenness; });
     const Lightmap before = shown_map(rig, result.start, worst->sled);
@@ -199,7 +199,7 @@ std::vector<PagePart> front(const DesignResult& result) {
             svg_drawing("trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)}};
 }
 
-// From above, forward up: the strobes, and a stroke to where each points halfway to the floor.
+// From above, forward up: the strobes, and a line along each aim, halfway to the floor.
 std::string plan_of(const Rig& rig, const DesignResult& result) {
     constexpr double kSide = 520.0;
     constexpr double kRoom = 40.0;

@@ -35,7 +35,7 @@ struct ReliefMapMaker::Tables {
 
 namespace {
 
-// Whether the neighbour's point lies off the plane through this one.
+// Whether the neighbour's point is off the plane through this one.
 bool jumps(const Relief& relief, std::size_t pixel, std::size_t neighbour) {
     if (relief.knows(pixel) != relief.knows(neighbour)) return true;
     const Eigen::Vector3f& from = relief.point_m[pixel];

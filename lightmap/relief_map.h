@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The signal of the rig's camera on a relief (light/relief_image.h) with the veil before it
-// (light/relief_veil.h): what a lightmap is on a plane. An emitter of a size is as many lamps as at
-// the rig's own altitude.
+// (light/relief_veil.h), the counterpart of a lightmap on a plane. An emitter with a size has as
+// many lamps as at the rig's own altitude.
 #pragma once
 
 #include "light/relief.h"
@@ -17,8 +17,8 @@ namespace aphotic {
 
 struct ReliefMap {
     Lightmap map;
-    // 1 for every pixel within so many pixels of an edge of a beam, a shadow's border, or a jump of
-    // the range by more than kReliefJump of itself.
+    // 1 for every pixel within this many pixels of an edge of a beam, a shadow's border, or a jump
+    // of the range by more than kReliefJump of itself.
     std::vector<std::uint8_t> edges;
 };
 
@@ -33,9 +33,9 @@ class ReliefMapMaker {
 
     [[nodiscard]] ReliefMap map(const Relief& relief, int within_px) const;
 
-    // Sights without a port begin at the pupil.
+    // Rays without a port begin at the pupil.
     [[nodiscard]] bool has_port() const;
-    // The ray in water of the middle of the spectrum, along which ranges are taken.
+    // The ray in water for the middle of the spectrum, along which ranges are measured.
     [[nodiscard]] WaterRay ray(double column, double row) const;
 
   private:

@@ -41,7 +41,7 @@ fs::path located(const std::string& command, const std::string& origin) {
             command,
             origin);
     }
-    // It will run in another folder.
+    // Made absolute, since it will run in another folder.
     return fs::absolute(path);
 }
 
@@ -59,8 +59,8 @@ struct Version {
     std::string words;  // such as 3.7.0.10.unofficial
 };
 
-// "POV-Ray 3.7.0.10.unofficial" up to a blank, wherever it stands: complaints about its settings
-// may come before it.
+// "POV-Ray 3.7.0.10.unofficial" up to a blank, anywhere: complaints about its settings may precede
+// it.
 std::optional<Version> introduced_version(const std::string& printed) {
     static const std::regex kIntroduction(
         R"(POV-Ray ((\d{1,9})\.(\d{1,9})(?!\d)[^ \t\r\n]{0,80})(?=[ \t\r\n]|$))");
@@ -87,7 +87,8 @@ bool lists_openexr(std::string_view printed) {
 }  // namespace
 
 PovRay povray_from(std::string_view printed) {
-    // It introduces itself first, after a complaint or two; and what prints without end is not it.
+    // It identifies itself first, after a complaint or two; a program that prints without end is
+    // not POV-Ray.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
     const std::optional<Version> version = introduced_version(std::string(printed));

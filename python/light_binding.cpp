@@ -139,7 +139,7 @@ RigLightmap lightmap(
     return light;
 }
 
-// Tables once, then a map of any pose and any places of the strobes in milliseconds.
+// Tables once, then a map for any pose and any places of the strobes in milliseconds.
 class RigLightmapMaker {
   public:
     RigLightmapMaker(const TextRig& rig,
@@ -191,7 +191,7 @@ class RigLightmapMaker {
     }
 
   private:
-    // Never none: what the tables of a map alone do not serve is black in it, without a word.
+    // Never empty: paths outside a map's tables would silently be black in it.
     static PathRange paths_for(const Rig& rig, const std::vector<double>& altitudes_m) {
         std::vector<Sled> sleds{rig.sled};
         for (const double altitude_m : altitudes_m) {
@@ -287,7 +287,7 @@ struct Traced {
     int width_px = 0;
     bool has_signals = true;
     std::vector<double> lambda_nm;
-    std::vector<double> planes;  // R, G, B if asked for, then one a wavelength
+    std::vector<double> planes;  // R, G, B if requested, then one per wavelength
     std::vector<unsigned char> on_edges;
 
     [[nodiscard]] std::size_t pixels() const {

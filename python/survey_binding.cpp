@@ -85,7 +85,7 @@ struct CorrectedArray {
     PerChannel gain{};
 };
 
-// As `aphotic correct` does an image of a survey, or the survey of this image alone.
+// As `aphotic correct` corrects an image of a survey, or of a survey with this image only.
 Correction correction_of(const RawImage& raw,
                          const RigLightmap& light,
                          const CorrectOptions& options) {
@@ -97,7 +97,7 @@ Correction correction_of(const RawImage& raw,
     }
     if (options.gain) {
         correction.gain = *options.gain;
-        // Of a gain by itself nobody knows how much light the middle has.
+        // With a given gain, how much light the median has is unknown.
         if (!options.middle) correction.limit = {.share = options.limit.share};
         return correction;
     }
@@ -211,7 +211,7 @@ struct Fitted {
     std::vector<Skipped> skipped;
 };
 
-// As the command says it on standard error.
+// As the command prints it on standard error.
 void warn_of(const Fitted& fitted) {
     const nb::object warn = nb::module_::import_("warnings").attr("warn");
     for (const Skipped& one : fitted.skipped)
