@@ -29,8 +29,8 @@ struct Blocks {
     std::vector<double> reference;
 };
 
-// For pictures of half a page's width. Two pixels or more where some were not observed: a block of
-// a mosaic holds every colour.
+// For pictures of half a page's width. Two pixels or more if some were not observed: a block of a
+// mosaic holds every colour.
 int side_of(const ComparedImages& images) {
     const bool is_whole = std::ranges::all_of(images.channels, [](const ComparedChannel& channel) {
         return channel.comparison.unobserved == 0;
@@ -77,7 +77,7 @@ std::vector<PagePart> patterns(const Blocks& blocks, const ComparedImages& image
                 "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)};
 }
 
-// Of each sample, by the rule; what was never observed is set apart.
+// For each sample, by the rule; samples never observed are marked.
 std::vector<PagePart> differences(const ComparedChannel& channel,
                                   const ComparedImages& images,
                                   int side) {
@@ -87,7 +87,7 @@ std::vector<PagePart> differences(const ComparedChannel& channel,
     std::vector<float> reference = channel.reference;
     for (std::size_t i = 0; i < image.size(); ++i) {
         if (!channel.marks.empty() && channel.marks[i] == kUnobserved) {
-            image[i] = reference[i] = 0.0F;  // neither here nor there, and no fault
+            image[i] = reference[i] = 0.0F;  // neither compared nor a fault
             errors.push_back(kNaN);
         } else {
             errors.push_back(

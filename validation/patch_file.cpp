@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kPatchColumns{"patch", "x", "y", "w", "h", "reference"};
 constexpr std::size_t kNeededPatchColumns = 5;  // of these
 
-// Where a line has which of kPatchColumns; past its end: nowhere.
+// The column of each of kPatchColumns in a line; past its end: absent.
 using PatchLayout = std::array<std::size_t, kPatchColumns.size()>;
 
 PatchLayout layout_of(const std::string& name,
@@ -53,7 +53,7 @@ std::vector<double> numbers_in(std::string_view text) {
     return numbers;
 }
 
-// What the reference says. False when that is nothing that we know.
+// Parses the reference. False if it is not recognised.
 bool take_reference(Patch& patch) {
     constexpr double kMostLightness = 100.0;
     constexpr double kMostChroma = 200.0;

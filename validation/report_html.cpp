@@ -75,7 +75,7 @@ std::string edges_in_words(const ValidationReport& report) {
     return words;
 }
 
-// That two different scenes were compared has to be known before any number.
+// The reader must know before any number that two different scenes were compared.
 std::vector<std::string> other_scene(const ValidationReport& report) {
     if (report.scene_file.empty()) return {};
     return {fmt::format(
@@ -101,7 +101,7 @@ std::vector<std::string> verdict(const ValidationReport& report) {
     return said;
 }
 
-// Both under the reference's scale.
+// Both on the reference's scale.
 std::vector<PagePart> images(const ValidationReport& report) {
     const int side = block_side(report.traced.width_px, report.traced.height_px);
     const CameraImage traced = block_means(report.traced, side);
@@ -270,7 +270,7 @@ std::vector<PagePart> model_check(const ModelCheck& model) {
         std::move(made)};
 }
 
-// What no rig file says: how much of the floor is in view, where that is level.
+// The part of the floor in view if it is level, which no rig file states.
 std::string field_of_view(const Rig& rig) {
     const Camera& camera = rig.camera;
     const double middle_nm = (camera.range.first_nm + camera.range.last_nm) / 2.0;
