@@ -59,7 +59,7 @@ struct ShownBeam {
     std::optional<double> export_error;
 };
 
-// Of a file, which is as bright as it says: a lamp of its own lumens.
+// For a file, which is as bright as it states: a lamp of its own lumens.
 void take_file(const std::string& file, ShownBeam& shown) {
     if (rig_settings()) throw InputError("--set: found with {}; allowed: with a rig", file);
     const PhotometricFile read = read_photometric_file(file);
@@ -217,7 +217,7 @@ void plot(const Beam& beam, const std::string& file) {
     write_plots(std::vector<Plot>{cartesian, polar}, file);
 }
 
-// For the first lamp whose lumens are known; else for a thousand.
+// For the first lamp whose lumens are known; otherwise for a thousand.
 double exported_flux_lm(const std::vector<BeamUser>& users) {
     for (const BeamUser& user : users) {
         if (user.luminous_flux_lm) return *user.luminous_flux_lm;

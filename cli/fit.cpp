@@ -70,7 +70,7 @@ bool is_given(const CLI::App& app, const std::string& option) {
     return app.count(option) > 0;
 }
 
-// Options of images, which say nothing of maps; all that --nav needs are found out with it.
+// Options for images, meaningless for maps; everything that --nav needs is checked with it.
 constexpr std::array kOfImages{"--nav",
                                "--bayer",
                                "--crop",
@@ -87,7 +87,7 @@ void require_use(const CLI::App& app) {
     }
 }
 
-// The rig to begin with is kept.
+// The starting rig is kept.
 void require_other_rig(const FitCommandOptions& options) {
     std::error_code error;
     if (!std::filesystem::equivalent(options.input.rig, options.folder / kFittedRig, error)) return;
@@ -106,7 +106,7 @@ void require_one_source(const CLI::App& app) {
         throw InputError("--images: found no navigation; allowed: with --nav FILE");
 }
 
-// As WORD=SPREAD, where the unit may follow: aim=2deg, altitude=0.1m.
+// As WORD=SPREAD, possibly with a unit: aim=2deg, altitude=0.1m.
 std::map<std::string, double> priors_in(const std::vector<std::string>& given) {
     std::map<std::string, double> priors;
     for (const std::string& one : given) {

@@ -55,8 +55,8 @@ nlohmann::ordered_json to_json(const Generated& made) {
     return json;
 }
 
-// What renders all frames. Of a user's scene plain povray runs in its folder: paths from there, so
-// that both may be carried elsewhere.
+// The command that renders all frames. For a user's scene plain povray runs in its folder: paths
+// are relative to it, so that both can be moved.
 std::string povray_loop(const Generated& made) {
     if (made.own_scene.empty()) {
         return fmt::format(

@@ -57,7 +57,7 @@ struct LightmapCommandOptions {
     bool json = false;
 };
 
-// Of FROM:TO:STEP, both ends with it; none where the steps do not end there.
+// From FROM:TO:STEP, both ends included; empty if the steps do not end at TO.
 std::vector<double> range_of(double from, double to, double step) {
     constexpr double kMostSteps = 10000.0;
     constexpr double kWhole = 1e-6;

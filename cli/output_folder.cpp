@@ -40,7 +40,7 @@ std::uint64_t scenes_bytes(const SceneSet& scenes) {
     return bytes;
 }
 
-// What the folder's own scenes include is there, in full; scenes are of one length.
+// What the folder's own scenes include exists, complete; scenes have one length.
 std::uint64_t parsed_bytes(const fs::path& folder) {
     std::uint64_t includes = 0;
     std::uint64_t longest = 0;
@@ -51,7 +51,7 @@ std::uint64_t parsed_bytes(const fs::path& folder) {
     return includes + longest;
 }
 
-// A manifest that cannot be read is the render's to complain of.
+// An unreadable manifest is reported by the render.
 std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     if (folder.empty() || !fs::exists(manifest_path(folder))) return std::nullopt;
     try {

@@ -22,8 +22,8 @@
 namespace aphotic::cli {
 namespace {
 
-// Settings of POV-Ray's own that change its speed. Others would change what a frame holds: Quality
-// below 9 leaves out the water, gamma and format are the integrator's.
+// POV-Ray settings that change only its speed. Others would change a frame's contents: Quality
+// below 9 omits the water, gamma and format are the integrator's.
 constexpr std::string_view kSpeedKeys =
     "Bounding, Bounding_Method, Bounding_Threshold, BSP_BaseAccessCost, BSP_ChildAccessCost, "
     "BSP_IsectCost, BSP_MaxDepth, BSP_MissChance, Light_Buffer, Remove_Bounds, Render_Block_Size, "

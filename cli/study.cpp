@@ -44,7 +44,7 @@ struct StudyCommandOptions {
     bool ignore_needs = false;
 };
 
-// A setting and its plan, made before anything is rendered: what cannot be kept is refused at once.
+// A setting and its plan, made before anything is rendered: an impossible one is refused at once.
 struct PlannedSetting {
     StudySetting setting;
     RenderPlan plan;

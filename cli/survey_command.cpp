@@ -24,7 +24,7 @@
 namespace aphotic::cli {
 namespace {
 
-// A line for each part of the work: it tells how long that part will take.
+// A line for each part of the work, with the time left for that part.
 class ProgressOfParts {
   public:
     void show(std::string_view what, double share) {
@@ -262,7 +262,7 @@ Survey read_survey(const SurveyInput& input, const std::filesystem::path& output
                   .dropouts = input.dropouts};
     if (rig != nullptr) survey.camera = with_rig(survey.camera, rig->camera);
     survey.camera = with_reference(survey.camera, survey.files);
-    // A crop that no image has is one mistake.
+    // A crop that fits no image is one mistake, reported once.
     survey.camera = expecting_usual_size(survey.camera, survey.files);
     return survey;
 }
@@ -323,7 +323,7 @@ void print_relief(const Survey& survey) {
 }
 
 std::size_t AllowedSkips::of(std::size_t images) const {
-    // 0.07 of 100 are 7, which their product in doubles misses by its rounding.
+    // 0.07 of 100 is 7, which their product in doubles misses by rounding.
     constexpr double kRounding = 1e-9;
     const double number_of =
         is_share ? number * static_cast<double>(images) * (1.0 + kRounding) : number;

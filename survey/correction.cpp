@@ -70,8 +70,7 @@ float brightest(const Lightmap& map, int channel) {
     return std::ranges::max(plane_of(map, channel));
 }
 
-// h of a pixel. A channel whose map is 0 there tells nothing, as between an observed mosaic's
-// sites.
+// h of a pixel. A channel whose map is 0 there is ignored, as between an observed mosaic's sites.
 float held_share(const std::array<std::span<const float>, kChannels>& lights,
                  const std::array<float, kChannels>& least,
                  std::size_t pixel) {

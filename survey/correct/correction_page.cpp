@@ -24,7 +24,7 @@ std::string per_channel(const PerChannel& numbers) {
         "{} red, {} green, {} blue", plain(numbers[0]), plain(numbers[1]), plain(numbers[2]));
 }
 
-// What came out.
+// The results.
 
 std::string headline(const CorrectionReport& report) {
     const RunOutcome& run = *report.run;
@@ -75,7 +75,7 @@ struct LightSeen {
     std::array<std::vector<double>, kChannels> image;  // the image's own, by its median quotient
 };
 
-// By altitude. The maps are scaled to the images: by the median of what one is of the other.
+// By altitude. The maps are scaled to the images by the median of their ratio.
 LightSeen light_seen(std::span<const ImageLook> looks) {
     std::vector<const ImageLook*> seen;
     const auto is_lit = [](double number) { return std::isfinite(number) && number > 0.0; };

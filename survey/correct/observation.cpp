@@ -34,7 +34,7 @@ struct ReadImage {
     LightCells cells;
 };
 
-// The images at the altitude, and what became of the others.
+// The images at the altitude, and the reasons for omitting the others.
 struct Selection {
     std::vector<ChosenImage> images;
     std::size_t outside = 0;
@@ -65,7 +65,7 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
     return selection;
 }
 
-// Goes through the images in their order, and drops from the selection what cannot be used.
+// Goes through the images in order, and drops unusable ones from the selection.
 struct Pass {
     const CameraNumbers& camera;
     const std::optional<DepthMaps>& depth;
@@ -102,7 +102,7 @@ struct Pass {
         std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
     }
 
-    // Pixels whose own depth is not the altitude's, or not known.
+    // Pixels whose own depth is unknown or not at the altitude.
     void leave_out_relief(const ImageFile& file, RawImage& raw) const {
         const DepthMap map =
             resized(read_depth_map(depth_file(depth->place, file.source), depth->unit_m),
@@ -128,7 +128,7 @@ struct Pass {
     }
 };
 
-// Those of less light than the others, by their level, after a pass has read all: how many.
+// Images with less light than the others, by their level, once a pass has read all: their number.
 std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& observation) {
     if (survey.dropouts == Dropouts::Ignore) return 0;
     std::vector<LightCells> cells;
@@ -146,7 +146,7 @@ std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& 
     });
 }
 
-// Once more where a first pass finds images that do not count.
+// Repeated if a first pass finds images to be dropped.
 template <typename Drop>
 Observed running_mean(Pass& pass, const Drop& drop) {
     std::optional<RunningMean> mean;
@@ -169,7 +169,7 @@ void append(std::vector<float>& to, const std::vector<float>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-// A first pass finds which images can be used at all.
+// A first pass finds which images are usable.
 template <typename Drop>
 Observed average_by_bands(Pass& pass,
                           Selection& selection,

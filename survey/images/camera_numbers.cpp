@@ -154,7 +154,7 @@ std::optional<PlaneSize> size_if_readable(const ImageFile& file) {
     try {
         return size_in(file.source);
     } catch (const InputError&) {
-        return std::nullopt;  // it is said of the image when its turn comes
+        return std::nullopt;  // the image is reported when its turn comes
     }
 }
 

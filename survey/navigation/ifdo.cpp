@@ -32,7 +32,7 @@ IfdoJson plain_scalar(const std::string& text) {
     if (is_in(kFalse)) return false;
     std::string_view digits = text;
     if (digits.starts_with('+')) digits.remove_prefix(1);
-    // Such as 007, which is octal to some readers, a number or a name to others.
+    // Such as 007, which some readers take as octal, some as a number, some as a name.
     const std::size_t first = digits.starts_with('-') ? 1 : 0;
     const bool is_padded = digits.size() > first + 1 && digits[first] == '0' &&
                            digits[first + 1] >= '0' && digits[first + 1] <= '9';
@@ -109,8 +109,8 @@ void require_few_values(const std::string& name, std::string_view text) {
 }
 
 IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
-    // Without aliases a value takes two letters or more. Few of them are much longer than what
-    // they stand for.
+    // Without aliases a value takes at least two characters. Few of them are much longer than their
+    // value.
     constexpr std::size_t kMostValuesOfLetter = 4;
     constexpr std::size_t kAnyway = 1000;
     require_few_values(name, text);

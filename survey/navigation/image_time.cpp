@@ -31,7 +31,7 @@ constexpr std::array<MaskPart, 8> kMaskParts{{{"YYYY", true},
                                               {"fff", false},
                                               {"uuu", false}}};
 
-// The digits that stand where the mask has these letters.
+// The digits at the places of these letters in the mask.
 std::optional<int> part_in(std::string_view name, std::string_view mask, std::string_view letters) {
     const std::size_t at = mask.find(letters);
     if (at == std::string_view::npos) return 0;
@@ -46,7 +46,7 @@ std::string tag(const std::map<std::string, std::string>& tags, const std::strin
     return found == tags.end() ? "" : std::string(trimmed(found->second));
 }
 
-// Blanks, with or without the colon between them, are EXIF's way to say that it is not known.
+// Blanks, with or without the colon between them, mean unknown in EXIF.
 std::string zone_in(const std::map<std::string, std::string>& tags, const std::string& name) {
     const std::string zone = tag(tags, name);
     return zone.find_first_not_of(" :") == std::string::npos ? "" : zone;

@@ -193,7 +193,7 @@ std::vector<std::string> Navigation::images() const {
 
 void Navigation::mount(const Mounting& mounting) {
     for (auto& [key, pose] : poses_) {
-        // Of the vehicle: what no vehicle can have is said in its own numbers.
+        // For the vehicle: an impossible pose is reported in its own numbers.
         if (!pose.fault.empty() || !fault_of(pose.sled).empty()) continue;
         try {
             pose.sled = camera_pose(pose.sled, mounting);

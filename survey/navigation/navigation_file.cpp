@@ -94,8 +94,8 @@ bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptio
     }
 }
 
-// A pose for each image, by read(pose), from several threads: files are opened, be it over a
-// network. What it finds wrong is the pose's fault.
+// A pose for each image, from read(pose), in several threads, since files are opened, perhaps over
+// a network. Its errors become the pose's fault.
 template <typename Read>
 std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files,
                                 std::size_t jobs,
@@ -122,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> in_our_order(const ColumnNames&
     return ordered;
 }
 
-// What is said of times in vain would be thought to count.
+// Times given in vain would be thought to count.
 void require_no_times(const NavigationOptions& options) {
     if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
     throw InputError(
@@ -225,7 +225,7 @@ Navigation navigation_of_table(const NavigationTable& table,
     return navigation;
 }
 
-// Poses that are the camera's own cannot be turned by its place on the vehicle.
+// The camera's own poses cannot be converted by its mounting on the vehicle.
 void require_no_place(const NavigationOptions& options, const Mounting& mounting) {
     if (!is_mounted_apart(mounting)) return;
     throw InputError(
@@ -234,7 +234,7 @@ void require_no_place(const NavigationOptions& options, const Mounting& mounting
         options.source);
 }
 
-// Of angles that the navigation does not tell, the rig's count; they are the camera's.
+// Angles that the navigation does not have are the rig's, which are the camera's.
 void require_angles(const Navigation& navigation,
                     const NavigationOptions& options,
                     const Mounting& mounting,
@@ -257,7 +257,7 @@ void require_angles(const Navigation& navigation,
     }
 }
 
-// An iFDO says which fields it has, in which unit, and that they are the camera's.
+// An iFDO states its fields and their units, and that they are the camera's.
 void require_ifdo_alone(const NavigationOptions& options) {
     require_no_times(options);
     const auto refuse = [&](std::string_view option) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Poses over time, between which those of images are interpolated linearly:
+// Poses over time, between which images' poses are interpolated linearly:
 //
 //   pose(t) = pose_i + (pose_i+1 - pose_i) (t - t_i) / (t_i+1 - t_i),     t_i <= t <= t_i+1
 //
 // At a point's own time it is that point's pose. A point's angles are within 89.9 degrees of level,
-// so that this is the shorter way round. Where altitude changes with an acceleration a, it is off
-// by a (t_i+1 - t_i)^2 / 8 at most: under a sled that a swell heaves by half a metre every ten
-// seconds, 0.2 m/s^2, that is 0.1 m over kLongestGap_s, the width of an altitude bin.
+// so that this is the shorter way round. If altitude changes with an acceleration a, the error is
+// at most a (t_i+1 - t_i)^2 / 8: for a sled that a swell heaves by half a metre every ten seconds,
+// 0.2 m/s^2, that is 0.1 m over kLongestGap_s, the width of an altitude bin.
 #pragma once
 
 #include "rig/rig.h"
@@ -27,11 +27,11 @@ struct TrackPoint {
 
 class Track {
   public:
-    // In any order; of several at one time the first counts.
+    // In any order; of several at one time the first is used.
     Track(std::vector<TrackPoint> points, double longest_gap_s);
 
-    // An InputError when the time is before the first point, after the last, or between two that
-    // are more than longest_gap_s apart.
+    // An InputError if the time is before the first point, after the last, or between two that are
+    // more than longest_gap_s apart.
     [[nodiscard]] Sled at(double time_s) const;
 
   private:
