@@ -273,8 +273,7 @@ std::optional<Navigation> navigation_of(const SurveyInput& input,
     const bool has_depth = !input.depth.place.empty();
     if (!input.navigation.source.empty()) return read_navigation(input, files, &rig);
     if (!has_depth)
-        throw InputError(
-            "--rig needs --nav, for the map depends on where the sled was, or --depth-map");
+        throw InputError("--rig needs --nav, since the map depends on the pose, or --depth-map");
     if (input.depth.normals == NormalsFrom::Floor)
         throw InputError("--normals floor needs --nav, which gives the floor's orientation");
     return std::nullopt;

@@ -215,7 +215,7 @@ void fields(const Visit& visit, Scene& scene) {
     visit("sha256", scene.sha256);
     visit("materials", scene.materials);
     visit("shortest_path_m", scene.shortest_path_m);
-    visit.require("shortest_path_m", "a number over 0", scene.shortest_path_m > 0.0);
+    visit.require("shortest_path_m", "a number above 0", scene.shortest_path_m > 0.0);
     visit("longest_path_m", scene.longest_path_m);
     visit.require("longest_path_m",
                   "a number no smaller than shortest_path_m",
@@ -246,7 +246,7 @@ void fields(const Visit& visit, Veil& veil) {
 template <typename Visit, Is<PlannedWavelength> Wavelength>
 void fields(const Visit& visit, Wavelength& w, Before& before) {
     visit("lambda_nm", w.lambda_nm);
-    visit.require("lambda_nm", "increasing wavelengths over 0", w.lambda_nm > before.lambda_nm);
+    visit.require("lambda_nm", "increasing wavelengths above 0", w.lambda_nm > before.lambda_nm);
     before.lambda_nm = w.lambda_nm;
     visit("weight", w.weight);
     visit("frame", w.frame, 0, before.frames - 1);

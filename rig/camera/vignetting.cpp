@@ -110,7 +110,7 @@ void require_bright(const Camera& camera) {
             const double V = vignetting_at(camera, column, row);
             if (V > 0.0) continue;
             throw InputError(
-                "found a factor of {:.4g} at column {:.0f}, row {:.0f}; allowed: over 0",
+                "found a factor of {:.4g} at column {:.0f}, row {:.0f}; allowed: above 0",
                 V,
                 column,
                 row);
@@ -135,7 +135,7 @@ TabulatedVignetting parse_vignetting_csv(const std::string& file_name, std::stri
             fail_at_line(
                 file_name, line, "angle_deg: found {}; allowed: from 0, increasing", fields[0]);
         if (!(fields[1] > 0.0))
-            fail_at_line(file_name, line, "factor: found {}; allowed: over 0", fields[1]);
+            fail_at_line(file_name, line, "factor: found {}; allowed: above 0", fields[1]);
         made.angles_rad.push_back(angle_rad);
         made.factors.push_back(fields[1]);
     }

@@ -285,8 +285,9 @@ class Problem {
                 throw InputError("--prior: found '{}', which is not fitted; allowed: what is free",
                                  asked);
             if (!(spread > 0.0) || !std::isfinite(spread))
-                throw InputError(
-                    "--prior: found {} of {}; allowed: a standard deviation over 0", spread, asked);
+                throw InputError("--prior: found {} of {}; allowed: a standard deviation above 0",
+                                 spread,
+                                 asked);
         }
     }
 

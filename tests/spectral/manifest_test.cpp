@@ -288,8 +288,8 @@ TEST(Manifest, RefusesValuesThatNoManifestHas) {
         {"/frames/1/name", {"band_450_550nm"}, "a unique name"},
         // As many as a scene may hold, and one at least.
         {"/strobes/0/lamps_along", {0, -1, 2.5, "5", 100001}, "a whole number from 1 to 100000"},
-        {"/wavelengths/0/lambda_nm", {0}, "increasing wavelengths over 0"},
-        {"/wavelengths/1/lambda_nm", {450.0, -5}, "increasing wavelengths over 0"},
+        {"/wavelengths/0/lambda_nm", {0}, "increasing wavelengths above 0"},
+        {"/wavelengths/1/lambda_nm", {450.0, -5}, "increasing wavelengths above 0"},
         {"/wavelengths/1/lambda_nm", {"550"}, "a number"},
         {"/wavelengths/1/weight", {1.0, {1, 2}, {1, 2, nullptr}}, "three numbers"},
         {"/wavelengths/1/flux", {7}, "a list of numbers"},
@@ -302,7 +302,7 @@ TEST(Manifest, RefusesValuesThatNoManifestHas) {
          "a whole number from -1000 to 1000"},
         {"/wavelengths/1/radiance_bound", {-1e-9}, "0 or more"},
         {"/scene", {7}, "an object"},
-        {"/scene/shortest_path_m", {0.0}, "a number over 0"},
+        {"/scene/shortest_path_m", {0.0}, "a number above 0"},
         {"/scene/longest_path_m", {0.1}, "a number no smaller than shortest_path_m"},
         {"/scene/materials", {{{"a", 1}}}, "a list of strings"}};
     const Json scene{{"file", "f"},
