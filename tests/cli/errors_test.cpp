@@ -113,13 +113,13 @@ TEST_F(CommandErrors, AnEmptyNameIsNone) {
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
     const std::string rig = text_of("rig.toml");
     write_file(path("rig.svg"), rig);
-    refused("plan rig.svg --plot rig.svg", "aphotic: --plot: found rig.svg, which RIG names too");
+    refused("plan rig.svg --plot rig.svg", "aphotic: --plot: found rig.svg, which RIG also names");
     EXPECT_EQ(text_of("rig.svg"), rig);
     fs::create_directory(path("raw"));
     write_file(path("raw/a.exr"), "raw");
     write_file(path("nav.csv"), "image,altitude_m\na.exr,2\n");
     refused("observe raw --nav nav.csv --altitude 2 -o raw/a.exr",
-            "aphotic: --output: found raw/a.exr, which IMAGES names too");
+            "aphotic: --output: found raw/a.exr, which IMAGES also names");
     EXPECT_EQ(text_of("raw/a.exr"), "raw");
 }
 

@@ -206,7 +206,7 @@ TEST_F(CommandRelief, MapsOfAnotherConventionOrOfOtherImagesAreWarnedOf) {
     };
     EXPECT_FALSE(has(said("right"), "depth"));
     EXPECT_TRUE(has(said("rays"), "the other depth convention"));
-    EXPECT_TRUE(has(said("others"), "other images'"));
+    EXPECT_TRUE(has(said("others"), "belong to other images"));
 }
 
 // What an image without one strobe becomes by the light that was on, on the depth map's floor, is

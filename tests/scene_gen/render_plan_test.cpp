@@ -462,7 +462,7 @@ TEST(RenderPlan, RefusesATooSmallToleranceAndKeepsTheOneThatItOffers) {
         request.tolerance = 1e-5;
         const std::string message = error_of(rig, request);
         ASSERT_TRUE(message.starts_with(kStart)) << rig.title << ": " << message;
-        EXPECT_TRUE(message.ends_with(" wavelengths keep")) << rig.title << ": " << message;
+        EXPECT_TRUE(message.ends_with(" wavelengths achieve")) << rig.title << ": " << message;
         request.tolerance = std::stod(message.substr(kStart.size()));
         EXPECT_GE(request.tolerance, kFrameError) << message;
         EXPECT_LE(plan_render(rig, request).promise(), request.tolerance) << rig.title << message;
