@@ -138,7 +138,7 @@ TEST(WholeTiff, AStripOfFewerBytesThanItsPixelsIsNotWhole) {
     EXPECT_EQ(fault_of(with(one, {{279, {0}}})), fault);
     EXPECT_EQ(fault_of(without(one, 279)), fault);
     EXPECT_EQ(fault_of(with(one, {{273, {1985}}})),
-              "it is truncated: found 2000 bytes of 2001 and more");
+              "it is truncated: found 2000 bytes of at least 2001");
 }
 
 // Numbers whose sums and products 64 bits do not hold.
@@ -146,7 +146,7 @@ TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
     EXPECT_EQ(fault_of(with(kStrips, {{273, times(4, kMost - 10)}})), "it points past its end");
     EXPECT_EQ(fault_of(with(kStrips, {{279, times(4, kMost)}})), "it points past its end");
     EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 20, 1001}}})),
-              "it is truncated: found 2000 bytes of 2001 and more");
+              "it is truncated: found 2000 bytes of at least 2001");
     // 2^32 x 2^32 tiles are 2^64, and as 64 bits have it, 0.
     EXPECT_NE(fault_of(with(kTiles,
                             {{256, {kMost32 + 1}}, {257, {kMost32 + 1}}, {322, {1}}, {323, {1}}})),

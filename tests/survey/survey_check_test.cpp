@@ -523,7 +523,7 @@ TEST(SurveyCheck, AltitudesInAnotherUnitThanTheRigsAreTold) {
     EXPECT_TRUE(has(told(1000.0, 2.0), "if they are in millimetres"));
     EXPECT_TRUE(has(told(100.0, 2.0), "if they are in centimetres"));
     EXPECT_TRUE(has(told(27.0, 2.0), "another column"));
-    EXPECT_TRUE(has(told(1.0, 40.0), "another column, or rig?"));
+    EXPECT_TRUE(has(told(1.0, 40.0), "another column or rig?"));
 }
 
 // Exposures of 8, 4, 2 and 1 ms that need factors of 1, 1.14, 1.4 and 2: levels go as their cube

@@ -164,7 +164,7 @@ TEST(NavigationCsv, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
     EXPECT_EQ(fault_of_a("z 2 0 0\na.tif 2 0\n"),
               "nav.csv:2: found 3 fields; allowed: 4: image, altitude, pitch, roll");
     EXPECT_EQ(fault_of_a("x/a.tif 2 0 0\nz 2 0 0\ny/a.png 2 0 0\na 2 0 0\n"),
-              "nav.csv:1: the image duplicate key 'a', also on line 4");
+              "nav.csv:1: duplicate image 'a', also on line 4");
     EXPECT_EQ(fault_of_a(header + ",2,0,0\n"), "nav.csv has no line for it; line 3 names no image");
     EXPECT_EQ(fault_of_a("altitude_m,image\n2,z\n2\n"),
               "nav.csv has no line for it; line 3 names no image");

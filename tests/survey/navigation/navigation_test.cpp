@@ -38,7 +38,7 @@ TEST(Navigation, FaultsOfPosesNameTheirSource) {
                             {.image = "c.tif", .sled = {}, .fault = "a gap of 30 s"}});
     EXPECT_EQ(fault_of(track, "a.tif"),
               "track: altitude_m: found no number; allowed: 0.001 to 10000");
-    EXPECT_EQ(fault_of(track, "b.tif"), "track: the image duplicate key 'b'");
+    EXPECT_EQ(fault_of(track, "b.tif"), "track: duplicate image 'b'");
     EXPECT_EQ(fault_of(track, "c.tif"), "track: a gap of 30 s");
     EXPECT_EQ(fault_of(track, "d.tif"), "track has no line for it");
 }
