@@ -293,10 +293,10 @@ std::string sled_refusal(const Rig& rig, const Sled& sled) {
 TEST(Lightmap, RefusesSledsThatPutAStrobeUnderTheFloor) {
     const Rig rig = scene("habcam", 32, 24);
     EXPECT_EQ(sled_refusal(rig, {.altitude_m = 0.02, .pitch_rad = 30.0 * kDegree}),
-              "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' is 0.2327 m under the sea "
+              "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' is 0.2327 m below the sea "
               "floor; allowed: at least 0.001 m above it");
     EXPECT_EQ(sled_refusal(rig, {.altitude_m = 2.0, .pitch_rad = -std::numbers::pi}),
-              "altitude 2 m, pitch -180, roll 0 degrees: strobe 'fore' is 2.0000 m under the sea "
+              "altitude 2 m, pitch -180, roll 0 degrees: strobe 'fore' is 2.0000 m below the sea "
               "floor; allowed: at least 0.001 m above it");
     const double grazing_m = 0.5 * std::tan(30.0 * kDegree);
     for (const double over_m : {-1e-6, 0.9e-3}) {

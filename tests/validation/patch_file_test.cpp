@@ -59,7 +59,7 @@ TEST(PatchFile, NamesTheLineOfAFault) {
     EXPECT_EQ(fault_of(header + "a,0,0,1\n"),
               "p.csv:2: h: found ''; allowed: whole pixels, 1 or more");
     EXPECT_EQ(fault_of(header + ",0,0,1,1,\n"),
-              "p.csv:2: patch: found no name; allowed: any name name");
+              "p.csv:2: patch: found no name; allowed: any name");
     for (const char* wrong : {"1.2", "0", "50 0", "101 0 0", "nan", "light-skn"}) {
         EXPECT_EQ(
             fault_of(header + "a,0,0,1,1," + wrong + "\n").find("p.csv:2: reference: found '"), 0U)
