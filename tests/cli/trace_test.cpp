@@ -84,7 +84,7 @@ TEST_F(CommandTrace, IsNotHeldAgainstItself) {
         fs::copy(path("rendered"), path(mixed), fs::copy_options::recursive);
         fs::copy_file(
             path("traced") / image, path(mixed) / image, fs::copy_options::overwrite_existing);
-        refused(validate(mixed), mixed + "/" + image + ": found an image of the reference tracer");
+        refused(validate(mixed), mixed + "/" + image + ": found an image by the reference tracer");
         // As the message says, the frames are still there.
         done(fmt::format("integrate {}", mixed));
         done(validate(mixed));
