@@ -32,9 +32,9 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-// What a temporary's name says of its file's: all of it, where the longest name that file systems
-// allow has room.
-std::string told_of(const fs::path& file) {
+// How much of the file's name goes into a temporary's name: all of it, if the longest name that
+// file systems allow has room.
+std::string kept_name_of(const fs::path& file) {
     constexpr std::size_t kLongestName = 255;
     constexpr std::size_t kOurs = 48;  // dots, boot, numbers, process and "part"
     constexpr std::size_t kDigest = 16;
@@ -48,8 +48,8 @@ bool is_gone(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-// Where a process number means something: the first digits of the kernel's boot_id, and the inode
-// of the space of process numbers. Empty where /proc does not tell.
+// Where process numbers are valid: the first digits of the kernel's boot_id, and the inode of the
+// process namespace. Empty if /proc does not say.
 struct ProcessSpace {
     std::string boot{};
     std::string numbers{};
@@ -69,7 +69,7 @@ ProcessSpace our_space() {
     return space;
 }
 
-// A file system of which one kernel at a time has the files: that of a disk, or in memory.
+// A file system whose files belong to one kernel at a time: on a disk, or in memory.
 bool is_of_this_machine(const fs::path& folder) {
     constexpr unsigned kXfs = 0x58465342;
     constexpr unsigned kZfs = 0x2FC12FC1;
@@ -86,7 +86,7 @@ bool is_of_this_machine(const fs::path& folder) {
            std::ranges::find(kLocal, static_cast<unsigned>(system.f_type)) != kLocal.end();
 }
 
-// Temporaries whose file's name is allowed.
+// Temporaries of files whose name is allowed.
 template <typename IsAllowed>
 void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
     static const std::regex kTemporary(
@@ -106,9 +106,9 @@ void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
     }
 }
 
-// Onto the disk, with all that it holds: a file, or a folder with its names. Some network file
-// systems cannot, and say so by EINVAL or ENOTSUP, and a folder that may not be listed (EACCES)
-// cannot be opened: there it is the system's to keep.
+// Flushes a file with its contents, or a folder with its names, to the disk. Some network file
+// systems cannot and return EINVAL or ENOTSUP, and a folder that may not be listed (EACCES) cannot
+// be opened: there the system takes care of it.
 bool is_synced(const fs::path& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) return errno == EACCES;
@@ -126,7 +126,7 @@ AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path))
     // The extension stays last: some writers choose their format by it.
     temporary_ = final_path_;
     temporary_.replace_filename(fmt::format(".{}.{}-{}-{}.part{}",
-                                            told_of(final_path_),
+                                            kept_name_of(final_path_),
                                             kOurs.boot,
                                             kOurs.numbers,
                                             ::getpid(),
@@ -143,7 +143,7 @@ void AtomicFile::commit() {
     const auto fail = [&](int error) {
         throw RunError("{}: cannot be written: {}", final_path_.string(), std::strerror(error));
     };
-    // In this order, or a power cut may leave the name of a file whose bytes are not there yet.
+    // In this order: otherwise a power cut may leave a file's name whose bytes are not there yet.
     if (!is_synced(temporary_)) fail(errno);
     std::error_code error;
     fs::rename(temporary_, final_path_, error);
@@ -158,9 +158,8 @@ void remove_abandoned_files(const fs::path& folder) {
 
 void remove_abandoned_of(const fs::path& file) {
     remove_abandoned(folder_of(file),
-                     [name = told_of(file) + file.extension().string()](const std::string& told) {
-                         return told == name;
-                     });
+                     [name = kept_name_of(file) + file.extension().string()](
+                         const std::string& kept) { return kept == name; });
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {
@@ -188,7 +187,7 @@ std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
                          most_bytes / kMebibyte);
     };
     if (fs::is_regular_file(path)) require_room(fs::file_size(path));
-    // Counted while reading too: a pipe or a device does not say its size.
+    // Counted while reading as well: a pipe or a device does not report its size.
     std::string text;
     std::vector<char> chunk(1U << 16U);
     while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that are whole or not there: written beside their place, then renamed into it.
+// Files that are complete or absent: written next to their place, then renamed into it.
 //
 //   AtomicFile out("image.exr");
 //   ... write to out.temporary() ...
 //   out.commit();
 //
-// commit() puts the file's bytes on the disk (fsync) before its new name, and then the name, so
-// that a power cut too leaves the file of before or the new one, whole. Without commit() nothing is
-// left behind, also when SIGINT, SIGTERM or SIGHUP ends us (base/interruption.h). A failed write,
-// sync or rename is a RunError that names the file.
+// commit() flushes the file's bytes to the disk (fsync) before its new name, and then the name, so
+// that even a power cut leaves either the old file or the new one, complete. Without commit()
+// nothing is left behind, even when SIGINT, SIGTERM or SIGHUP ends the process
+// (base/interruption.h). A failed write, sync or rename is a RunError that names the file.
 //
-// Only what cannot clean up, SIGKILL or a machine that goes down, leaves a temporary:
+// Only SIGKILL or a machine that goes down leaves a temporary, since neither can clean up:
 //
 //   .image.5f3a9c01-f000003c-1234.part.exr
 //
-// It names the boot of the kernel, its space of process numbers (a container's differ) and the
-// process. Others may write to the same folder from other machines and containers, where our
-// process numbers mean nothing, so the next run removes a temporary only where it is certain that
-// nobody writes it:
+// The name holds the kernel's boot, its process namespace (containers have different ones) and the
+// process. Other machines and containers may write to the same folder, and our process numbers mean
+// nothing there, so the next run removes a temporary only if it is certain that nobody is writing
+// it:
 //
 //   - same boot, same space of numbers: no such process is left
 //   - another boot: the file system is a disk or memory of this machine, so that boot is over
 //
-// Others stay, such as those of a container that was killed or of a machine that went down while
-// it wrote to a network folder. So do those of versions up to 0.2, which name the process alone.
+// Others stay, such as those of a killed container, or of a machine that went down while writing to
+// a network folder. So do those of versions up to 0.2, which hold the process number only.
 #pragma once
 
 #include "base/interruption.h"
@@ -55,8 +55,8 @@ class AtomicFile {
     std::optional<RemovedBySignal> removed_by_signal_;  // until it is committed
 };
 
-// Removes the temporaries that killed processes left in this folder. The second removes those of
-// one file alone, in a folder that is not ours.
+// Removes the temporaries that killed processes left in this folder. The second overload removes
+// those of one file only, in a folder that is not ours.
 void remove_abandoned_files(const std::filesystem::path& folder);
 void remove_abandoned_of(const std::filesystem::path& file);
 
@@ -65,15 +65,15 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
 
-// More than any text that people write or that is worth to be kept in memory.
+// More than any text that people write, or that is worth keeping in memory.
 inline constexpr std::size_t kMostTextFile_bytes = 256 * kMebibyte;
 
-// The whole file. An unreadable one is an InputError: users name such files. So is one of more
-// bytes than most_bytes, of which no more than that is read: a device or a pipe may have no end.
+// The whole file. An unreadable file is an InputError, since users name such files. So is one of
+// more than most_bytes; no more than that is read, since a device or a pipe may have no end.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
                                          std::size_t most_bytes = kMostTextFile_bytes);
 
-// Makes the folder and its parents. A RunError says why it cannot be created or written to.
+// Makes the folder and its parents. A RunError if it cannot be created or written to.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace aphotic

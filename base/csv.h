@@ -28,13 +28,13 @@ inline constexpr std::string_view kBlanks = " \t\r";
     return fields;
 }
 
-// What spreadsheets put before UTF-8.
+// The byte order mark that spreadsheets put before UTF-8.
 [[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view text) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-// Calls visit(number from 1, line), and returns how many there are.
+// Calls visit(line number from 1, line) and returns the number of lines.
 template <typename Visit>
 std::size_t for_each_line(std::string_view text, const Visit& visit) {
     text = without_byte_order_mark(text);

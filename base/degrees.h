@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Degrees, in which people write angles, and radians, in which everything here computes.
+// Degrees, for people, and radians, in which everything here computes.
 #pragma once
 
 #include <numbers>

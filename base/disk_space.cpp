@@ -46,7 +46,7 @@ std::string words_of_full_disk(const fs::path& folder) {
     std::error_code error;
     const std::uintmax_t left = fs::space(folder, error).available;
     if (error || left > kLittle) return "";
-    return fmt::format("\n{}: {}: {} KiB are left",
+    return fmt::format("\n{}: {}: {} KiB left",
                        folder.string(),
                        std::make_error_code(std::errc::no_space_on_device).message(),
                        left >> 10U);

@@ -20,8 +20,8 @@
 
 namespace aphotic {
 
-// Made of a message, or of what fmt::format() makes one of. Names and values in it may come from
-// anybody: what() has none of their control characters, and an end (base/printable.h).
+// Made from a message, or from fmt::format()'s arguments. Names and values in it may come from
+// anyone: what() has their control characters escaped and its length is limited (base/printable.h).
 class Failure : public std::runtime_error {
   public:
     explicit Failure(std::string_view message) : runtime_error(whole_message(message)) {}
@@ -42,7 +42,7 @@ class RunError : public Failure {
     using Failure::Failure;
 };
 
-// An InputError about a line of a file that the user gave.
+// An InputError about a line of a user's file.
 [[noreturn]] inline void fail_at_line(const std::string& file,
                                       std::size_t line,
                                       const std::string& what) {
@@ -58,7 +58,8 @@ template <typename First, typename... Rest>
         file, line, fmt::format(what, std::forward<First>(first), std::forward<Rest>(rest)...));
 }
 
-// The work's result; what it finds wrong with its input is said of `where`: a file or folder.
+// Does the work and returns its result; an InputError in it is prefixed with `where`, a file or
+// folder.
 template <typename Work>
 auto naming(const std::string& where, const Work& work) {
     try {

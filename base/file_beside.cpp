@@ -15,15 +15,14 @@ bool leads_out(const fs::path& relative) {
     return relative.empty() || relative.is_absolute() || *relative.begin() == "..";
 }
 
-// Where the path ends when every link on its way has been followed.
+// The path after all its links have been followed.
 fs::path end_of(const fs::path& path) {
     std::error_code error;
     fs::path end = fs::canonical(path, error);
     if (!error) return end;
     const bool dangles = error == std::errc::no_such_file_or_directory && fs::is_symlink(path);
-    throw InputError("{}: cannot be read: {}",
-                     path.string(),
-                     dangles ? "it is a link to what is not there" : error.message());
+    throw InputError(
+        "{}: cannot be read: {}", path.string(), dangles ? "it is a broken link" : error.message());
 }
 
 }  // namespace
@@ -31,7 +30,7 @@ fs::path end_of(const fs::path& path) {
 fs::path file_beside(const fs::path& folder, const std::string& name) {
     fs::path path = folder / name;
     constexpr std::string_view kAllowed = "a file in the same folder or below it";
-    // By its words first: what lies elsewhere is not even looked for.
+    // Checks the text of the path first, so that nothing outside is even looked up.
     if (leads_out(fs::path(name).lexically_normal())) {
         throw InputError("found '{}'; allowed: {}", name, kAllowed);
     }

@@ -13,7 +13,7 @@ struct Signature {
     std::string_view kind;
 };
 
-// As the formats' own documents have them; \0 is part of some.
+// From the formats' own documents; \0 is part of some.
 constexpr std::array kSignatures{
     Signature{"\xFF\xFE"sv, "text in UTF-16"},
     Signature{"\xFE\xFF"sv, "text in UTF-16"},

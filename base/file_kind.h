@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a file is that was given in the place of text, by its first bytes: "a PNG image", "a zip
-// archive, such as .xlsx or .npz". So a message can say more than that the text makes no sense.
+// The kind of a file given instead of text, from its first bytes: "a PNG image", "a zip archive,
+// such as .xlsx or .npz". A message can then say more than that the text is invalid.
 #pragma once
 
 #include <string_view>
 
 namespace aphotic {
 
-// Empty: none that is known.
+// Empty for unknown kinds.
 [[nodiscard]] std::string_view binary_kind(std::string_view bytes);
 
 }  // namespace aphotic

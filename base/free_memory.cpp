@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kUnbounded = std::numeric_limits<std::uint64_t>::max();
 
-// The number behind this word, or the first of the file.
+// The number after this word, or the file's first number.
 std::optional<std::uint64_t> number_in(const fs::path& file, const std::string& word = "") {
     std::ifstream in(file);
     std::string found;
@@ -26,7 +26,7 @@ std::optional<std::uint64_t> number_in(const fs::path& file, const std::string& 
     return std::nullopt;
 }
 
-// "0::/system.slice/job": of version 2 alone the first field is 0.
+// "0::/system.slice/job": only in version 2 is the first field 0.
 fs::path control_group(const fs::path& root) {
     constexpr std::string_view kUnified = "0::/";
     std::ifstream in(root / "proc/self/cgroup");
@@ -36,7 +36,7 @@ fs::path control_group(const fs::path& root) {
     return {};
 }
 
-// A group's own, without a bound where it has none: its file says "max" then.
+// A group's own limit, infinite if it has none: its file then says "max".
 std::uint64_t left_in_group(const fs::path& folder) {
     const auto most = number_in(folder / "memory.max");
     const auto taken = number_in(folder / "memory.current");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The memory that programs may take now: what the kernel calls available, which counts caches that
-// it would give up, or less where a control group (version 2) ends before, as a scheduler's job or
-// a container does.
+// The memory that programs may use now: what the kernel reports as available, which includes caches
+// that it would give up, or less if a control group (version 2) has a lower limit, as in a
+// scheduler's job or a container.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace aphotic {
 
-// Of Linux; without bound where it is not told. root: of another machine's files, for tests.
+// Linux only; infinite if unknown. root: the files of another machine, for tests.
 [[nodiscard]] std::uint64_t free_memory_bytes(const std::filesystem::path& root = "/");
 
 }  // namespace aphotic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Many pieces of work side by side, their results taken in order: what comes of them does not
-// depend on how many there are at once.
+// Parallel pieces of work whose results are used in order, so that the outcome does not depend on
+// the number of threads.
 #pragma once
 
 #include "base/error.h"
@@ -13,9 +13,9 @@
 
 namespace aphotic {
 
-// work(i), in threads, for i from 0 to count - 1, `jobs` of them begun ahead; use(i, its result)
-// here, in order. What either of them finds wrong with its input goes to skip(i, what), and the
-// others go on. Any other failure ends it all.
+// Runs work(i) in threads for i from 0 to count - 1, at most `jobs` ahead, and calls use(i, its
+// result) here, in order. An InputError of either goes to skip(i, what) and the others continue.
+// Any other failure ends everything.
 template <typename Work, typename Use, typename Skip>
 void in_order(std::size_t count, int jobs, const Work& work, const Use& use, const Skip& skip) {
     std::deque<decltype(std::async(std::launch::async, work, std::size_t{0}))> ahead;

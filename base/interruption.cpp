@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
-// What the handler reads. It may touch nothing else.
+// The handler's data. The handler may touch nothing else.
 std::atomic<int> noted_signal = 0;
 std::atomic<int> holds = 0;
 std::atomic<bool> is_ending = false;
@@ -29,14 +29,14 @@ std::atomic<const char*> last_words = nullptr;
 static_assert(std::atomic<int>::is_always_lock_free &&
               std::atomic<const char*>::is_always_lock_free);
 
-std::atomic<bool> is_told = false;  // Interrupted is on its way up
+std::atomic<bool> is_told = false;  // Interrupted is propagating
 
 std::mutex uses_mutex;
 int uses = 0;  // holds and temporaries
 std::array<struct sigaction, kSignals.size()> previous_actions{};
 
-// A thread that made the file's name known may not have made the file yet, and would after it was
-// removed: such a file is waited for. An open file that has no name any more is gone with us.
+// A thread that registered a file's name may not have created the file yet, and would do so after
+// we removed it, so such a file is waited for. An open file without a name goes with the process.
 void remove_temporaries() {
     constexpr int kMostWaits = 50;
     constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 2'000'000};
@@ -56,7 +56,7 @@ void remove_temporaries() {
     }
 }
 
-// A thread that comes here while the process ends must not free what the handler reads, nor begin
+// A thread that gets here while the process ends must not free the handler's data, nor start
 // another file.
 void wait_if_ending() {
     while (is_ending) ::pause();
@@ -79,7 +79,7 @@ extern "C" void on_signal(int signal) {
         errno = error;
         return;
     }
-    if (is_ending.exchange(true)) return;  // another thread has the first of two signals
+    if (is_ending.exchange(true)) return;  // another thread is handling the first of two signals
     remove_temporaries();
     say_last_words();
     end_by_signal(signal);
@@ -100,7 +100,7 @@ void begin_use() {
     }
 }
 
-// A signal that was noted for a hold does not wait for the files of other threads.
+// A signal noted for a hold does not wait for other threads' files.
 void end_use(bool is_hold) {
     const std::scoped_lock lock(uses_mutex);
     const bool is_last_hold = is_hold && --holds == 0;
@@ -165,13 +165,13 @@ void throw_if_interrupted() {
 }
 
 void end_by_signal(int signal) {
-    // Again where another thread, which begins a use meanwhile, has put the handler back.
+    // Again, in case another thread starts a use meanwhile and has reinstalled the handler.
     constexpr int kMostTries = 100;
     for (int i = 0; i < kMostTries; ++i) {
         ::signal(signal, SIG_DFL);
         ::raise(signal);
     }
-    // Only where the signal is blocked.
+    // Only if the signal is blocked.
     constexpr int kShellsOffset = 128;
     ::_exit(kShellsOffset + signal);
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// SIGINT, SIGTERM and SIGHUP, while there is something to put in order first: POV-Ray that runs, a
-// scratch folder, an image half written.
+// SIGINT, SIGTERM and SIGHUP while something must be cleaned up first: a running POV-Ray, a scratch
+// folder, a partly written image.
 //
 //   const InterruptionHold hold;
 //   while (...) { throw_if_interrupted(); ... }
 //
-// While a hold lives these signals are noted instead of ending us. Interrupted then unwinds the
-// stack, and so puts things in order; whoever catches it ends by end_by_signal(), so that a shell
-// or a scheduler sees which signal it was. A signal that nobody asked about ends us when the last
-// hold goes.
+// While a hold lives, these signals are noted instead of ending the process. Interrupted then
+// unwinds the stack and so cleans up; whoever catches it calls end_by_signal(), so that a shell or
+// a scheduler sees which signal it was. A signal that nobody checked for ends the process when the
+// last hold goes.
 //
 // Without a hold they end us at once, as ever, but for two things: the files that a
 // RemovedBySignal names are removed first, and what LastWords say is printed. Where the host of our
@@ -24,7 +24,7 @@
 
 namespace aphotic {
 
-// No RunError: nothing failed.
+// Not a RunError, since nothing failed.
 class Interrupted : public std::runtime_error {
   public:
     explicit Interrupted(int signal);
@@ -42,7 +42,7 @@ class InterruptionHold {
     InterruptionHold& operator=(const InterruptionHold&) = delete;
 };
 
-// A file that a signal which ends us is to remove, while this lives. It need not be there yet.
+// A file to remove if a signal ends the process during this object's life. It need not exist yet.
 // Beyond 4096 at a time the file stays, and the next run removes it (base/atomic_file.h).
 class RemovedBySignal {
   public:
@@ -71,7 +71,7 @@ class LastWords {
 // Throws Interrupted when a signal was noted.
 void throw_if_interrupted();
 
-// Ends the process as the signal would have: a shell tells 128 + signal.
+// Ends the process as the signal would have: a shell reports 128 + signal.
 [[noreturn]] void end_by_signal(int signal);
 
 }  // namespace aphotic

@@ -14,8 +14,8 @@
 namespace aphotic {
 namespace {
 
-// The library's own way to look at each value as it begins walks through all values of a list
-// whenever one of them ends.
+// The library's own callback for each new value walks through all values of a list whenever one of
+// them ends.
 int depth_of(std::string_view text) {
     int depth = 0;
     int deepest = 0;
@@ -34,9 +34,9 @@ int depth_of(std::string_view text) {
     return deepest;
 }
 
-// Of a key that stands twice in an object the library would take the last, without a word.
+// The library silently keeps the last of duplicate keys in an object.
 struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
-    std::vector<std::set<std::string>> open{};  // the keys of objects that have begun
+    std::vector<std::set<std::string>> open{};  // the keys of open objects
     std::string twice{};
 
     bool start_object(std::size_t) override {
@@ -71,14 +71,14 @@ struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
 nlohmann::json parse_json(std::string_view text, const std::string& what) {
     if (const int depth = depth_of(text); depth > kMostJsonDepth) {
         throw InputError(
-            "{}: found values nested in {} levels; allowed: up to {}", what, depth, kMostJsonDepth);
+            "{}: found values nested {} deep; allowed: up to {}", what, depth, kMostJsonDepth);
     }
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw InputError(what + ": is not JSON");
+    if (json.is_discarded()) throw InputError(what + ": not valid JSON");
     KeysOnce keys;
     nlohmann::json::sax_parse(text, &keys);
     if (!keys.twice.empty())
-        throw InputError("{}: '{}' stands twice in an object", what, excerpt(keys.twice));
+        throw InputError("{}: duplicate key '{}' in an object", what, excerpt(keys.twice));
     return json;
 }
 
@@ -86,7 +86,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
     constexpr int kIndent = 2;
     const std::string dumped =
         json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    // What JSON lets stand as it is and a terminal obeys: U+007F, and U+0080 to U+009F.
+    // Characters that JSON leaves as they are and a terminal obeys: U+007F, and U+0080 to U+009F.
     std::string text;
     for (std::size_t i = 0; i < dumped.size(); ++i) {
         const auto byte = static_cast<unsigned char>(dumped[i]);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Some numbers that go through the same formula, a pack of as many at a time as the processor's
-// vectors hold.
+// Several numbers that go through the same formula, in packs as wide as the processor's vectors.
 //
 //   Lanes         kLanes numbers in memory; LaneVector: as many vectors (x, y, z)
 //   Pack          what a formula is written for: +, *, std::experimental's sqrt, min, max, where
 //
-// A formula is one loop over packs, whose values stay in registers; what asks for a table is done
-// lane by lane.
+// A formula is one loop over packs, whose values stay in registers; table lookups are done lane by
+// lane.
 #pragma once
 
 #include <array>
@@ -22,13 +21,13 @@ using Pack = std::experimental::native_simd<double>;
 static_assert(kLanes % Pack::size() == 0);
 
 struct Lanes {
-    // Of the largest vectors, so that all of a program agree whatever theirs are.
+    // Aligned for the largest vectors, so that all parts of a program agree whatever their own.
     alignas(kLanes * sizeof(double)) std::array<double, kLanes> lane;
 
     double& operator[](std::size_t k) { return lane[k]; }
     const double& operator[](std::size_t k) const { return lane[k]; }
 
-    // The pack that begins at a lane.
+    // The pack that starts at a lane.
     [[nodiscard]] Pack pack(std::size_t k) const {
         return Pack(&lane[k], std::experimental::vector_aligned);
     }
@@ -46,18 +45,18 @@ inline void set_pack(LaneVector& v, std::size_t k, const PackVector& pack) {
     for (std::size_t i = 0; i < 3; ++i) v[i].set_pack(k, pack[i]);
 }
 
-// Calls f(k) of each pack's first lane.
+// Calls f(k) for the first lane of each pack.
 template <typename F>
 void for_each_pack(const F& f) {
     for (std::size_t k = 0; k < kLanes; k += Pack::size()) f(k);
 }
 
-// v.w, where one of them may be a vector that all share.
+// v.w, where either may be a vector shared by all lanes.
 [[nodiscard]] Pack dot(const auto& v, const auto& w) {
     return v[0] * w[0] + v[1] * w[1] + v[2] * w[2];
 }
 
-[[nodiscard]] inline Pack root(const Pack& x) {  // 0 of what rounding leaves below 0
+[[nodiscard]] inline Pack root(const Pack& x) {  // 0 where rounding leaves less than 0
     return std::experimental::sqrt(std::experimental::max(x, Pack(0.0)));
 }
 

@@ -16,7 +16,7 @@ bool same_letter(char a, char b) {
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // row[j]: distance of the part of a seen so far to the first j letters of b.
+    // row[j]: distance between the part of a seen so far and the first j letters of b.
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view wanted, std::span<const std::string> known) {
-    // The commonest slip: the unit left off.
+    // The commonest slip: a missing unit.
     constexpr std::size_t kLeastPrefix = 3;
     for (const std::string& name : known) {
         if (wanted.size() >= kLeastPrefix && name.starts_with(wanted)) return name;

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The unbounded minimum over some of the coefficients, the others being 0.
+// The unconstrained minimum over some of the coefficients, with the others 0.
 VectorXd minimum_over(const MatrixXd& G, const VectorXd& b, const std::vector<Index>& free) {
     VectorXd x = VectorXd::Zero(b.size());
     if (free.empty()) return x;
@@ -26,7 +26,7 @@ VectorXd minimum_over(const MatrixXd& G, const VectorXd& b, const std::vector<In
     return x;
 }
 
-// Of scaled equations, whose diagonal is 1 or 0.
+// For scaled equations, whose diagonal is 1 or 0.
 VectorXd scaled_fit(const MatrixXd& G, const VectorXd& b) {
     const Index count = b.size();
     const auto most_steps = 10 * count + 10;
@@ -44,7 +44,7 @@ VectorXd scaled_fit(const MatrixXd& G, const VectorXd& b) {
         if (best < 0) break;
         is_free[static_cast<std::size_t>(best)] = true;
         free.push_back(best);
-        // As far towards the minimum as no coefficient turns negative; those that would leave.
+        // Moves towards the minimum until a coefficient would turn negative; returns those that do.
         for (VectorXd to = minimum_over(G, b, free);; to = minimum_over(G, b, free)) {
             double share = 1.0;
             for (const Index i : free) {

@@ -21,7 +21,8 @@
 
 namespace aphotic {
 
-static_assert(std::endian::native == std::endian::little);  // samples come and go as they are
+static_assert(std::endian::native ==
+              std::endian::little);  // samples are read and written as they are
 
 namespace {
 
@@ -34,7 +35,7 @@ float number_at(const char* bytes) {
     return static_cast<float>(number);
 }
 
-// By descr, without the sign of its byte order.
+// By descr, without the byte order's sign.
 struct NumberType {
     std::string_view descr;
     std::size_t bytes;
@@ -48,8 +49,8 @@ constexpr std::array kNumberTypes{NumberType{"f4", 4, number_at<float>},
                                   NumberType{"u4", 4, number_at<std::uint32_t>},
                                   NumberType{"i4", 4, number_at<std::int32_t>}};
 
-// The header's text and where the samples begin. Version 1 has two bytes of its length, others
-// four.
+// The header's text, and where the samples start. Version 1 stores its length in two bytes, later
+// versions in four.
 std::pair<std::string, std::size_t> header_of(const std::string& file) {
     constexpr std::size_t kVersion = 6;
     constexpr std::size_t kLength = 8;
@@ -63,7 +64,7 @@ std::pair<std::string, std::size_t> header_of(const std::string& file) {
     return {file.substr(kLength + bytes, length), start};
 }
 
-// From the first index fastest to the last.
+// From first index fastest to last index fastest.
 std::vector<float> in_rows(const std::vector<float>& columns,
                            const std::vector<std::size_t>& shape) {
     std::vector<float> rows(columns.size());
@@ -96,10 +97,9 @@ NpyArray read_npy(const std::filesystem::path& path) {
         return is_known && one.descr == descr[1].str();
     });
     if (type == kNumberTypes.end())
-        throw InputError(
-            "{}: found {}; allowed: an array of little-endian real numbers as NumPy saves it",
-            path.string(),
-            is_known ? "numbers of the type " + descr[1].str() : "no such array");
+        throw InputError("{}: found {}; allowed: a NumPy array of little-endian real numbers",
+                         path.string(),
+                         is_known ? "numbers of the type " + descr[1].str() : "no such array");
     NpyArray array;
     const std::string sides = shape[1];
     static const std::regex kNumber("[0-9]+");

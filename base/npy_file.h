@@ -18,13 +18,13 @@
 
 namespace aphotic {
 
-// As many samples as the shape has places. The file is whole or not there.
+// As many samples as the shape has elements. The file is complete or absent.
 void write_npy(const std::filesystem::path& path,
                const std::vector<std::size_t>& shape,
                std::span<const float> samples);
 
-// Of numbers that are no complex ones, little-endian, in either order; here in C's. An InputError,
-// which names the file, when it is none.
+// Real numbers, little-endian, in either order; returned in C's order. Otherwise an InputError that
+// names the file.
 struct NpyArray {
     std::vector<std::size_t> shape{};
     std::vector<float> samples{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pieces of work that do not depend on each other, taken by threads as they come free.
+// Independent pieces of work, taken by threads as they become free.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace aphotic {
 
-// work(i, thread) once for each i under `count`, by threads 0 to threads - 1, of which the caller
-// is the first. Pieces come in no order: results do not depend on `threads` when each has a place
-// of its own. What a piece throws lets no further one begin, and comes out when all threads have
-// ended.
+// Runs work(i, thread) once for each i below `count`, in threads 0 to threads - 1; the caller is
+// thread 0. The order is unspecified: results do not depend on `threads` if each piece has its own
+// place for them. After a piece throws no other starts, and the exception is rethrown when all
+// threads have ended.
 template <class Work>
 void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
     std::atomic<std::size_t> next = 0;

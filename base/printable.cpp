@@ -6,8 +6,8 @@
 namespace aphotic {
 namespace {
 
-// The bytes of the control character at the front of a text, 0 when there is none. Those beyond
-// ASCII are two bytes of UTF-8: 0xC2, then 0x80 to 0x9F.
+// The number of bytes of the control character at the front of a text, or 0. Those beyond ASCII are
+// two bytes of UTF-8: 0xC2, then 0x80 to 0x9F.
 std::size_t control_length(std::string_view text) {
     const auto byte = static_cast<unsigned char>(text[0]);
     if (byte < 0x20 || byte == 0x7F) return 1;
@@ -15,7 +15,7 @@ std::size_t control_length(std::string_view text) {
     return byte == 0xC2 && next >= 0x80 && next < 0xA0 ? 2 : 0;
 }
 
-// Where a text may be cut at `place` or just before it, between characters of UTF-8.
+// The last place up to `place` that lies between two UTF-8 characters.
 std::size_t boundary_before(std::string_view text, std::size_t place) {
     constexpr std::size_t kMostBehindFirst = 3;
     for (std::size_t back = 0; back <= kMostBehindFirst && back < place; ++back) {
@@ -24,7 +24,7 @@ std::size_t boundary_before(std::string_view text, std::size_t place) {
     return place;
 }
 
-// Beginning and end of a longer text, so much of each that both take `most` bytes.
+// Start and end of a longer text, with `most` bytes in all.
 std::string without_middle(std::string_view text, std::size_t most) {
     if (text.size() <= most) return std::string(text);
     const std::size_t head = boundary_before(text, most / 2);

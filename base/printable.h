@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Text from outside, for a message: a control character, which could break the line or steer a
-// terminal, stands as \x1b. Other bytes, UTF-8 or not, stay as they are. And a message has an end,
-// however long what it quotes.
+// Text from outside, made safe for a message: a control character, which could break the line or
+// steer a terminal, is shown as \x1b. Other bytes, UTF-8 or not, stay as they are. The length of a
+// message is limited, however long the text it quotes.
 #pragma once
 
 #include <cstddef>
@@ -18,23 +18,23 @@ namespace aphotic {
 // U+0000 to U+001F, U+007F to U+009F.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
-// A value that a message quotes, such as a cell of a table: its first bytes, and "..." where there
-// are more.
+// A value quoted in a message, such as a table's cell: its first bytes, and "..." if there are
+// more.
 inline constexpr std::size_t kMostQuoted_bytes = 100;
 [[nodiscard]] std::string excerpt(std::string_view text);
 
-// A whole message: printable, but for its own line ends and tabs. Of a longer one the middle is
-// left out, since the file's name comes first and the cause last.
+// A whole message: printable, except its own newlines and tabs. The middle of a long one is
+// omitted, since the file's name comes first and the cause last.
 inline constexpr std::size_t kMostMessage_bytes = 4000;
 [[nodiscard]] std::string whole_message(std::string_view text);
 
-// A text that goes into a message: printable, line ends too, and no longer than a path may be with
+// A text that goes into a message: printable, newlines included, and no longer than a path with
 // words around it.
 inline constexpr std::size_t kMostText_bytes = 1500;
 [[nodiscard]] std::string shown_text(std::string_view text);
 
-// An argument of a message. A std::string or a view may come from outside. The rest are numbers and
-// our own words, and const char* also what another failure says: they stay.
+// An argument of a message. A std::string or a view may come from outside. Numbers, our own words
+// and const char*, including other failures' messages, stay as they are.
 template <typename Value>
 [[nodiscard]] decltype(auto) shown_value(const Value& value) {
     if constexpr (std::is_same_v<Value, std::string> || std::is_same_v<Value, std::string_view>) {

@@ -33,7 +33,7 @@ class ProgressLine {
     // left is that part's.
     void show(std::string_view what, double share);
 
-    // Wipes the line until it is shown again, for something else to be said.
+    // Wipes the line until the next show(), so that something else can be printed.
     void wipe();
 
   private:

@@ -36,7 +36,7 @@ class Sha256 {
 
   private:
     static void check(bool succeeded) {
-        if (!succeeded) throw RunError("the SHA-256 of the system's crypto library failed");
+        if (!succeeded) throw RunError("SHA-256 failed in the system's crypto library");
     }
 
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
@@ -58,7 +58,7 @@ std::string sha256_of_floats(std::span<const float> samples) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-    // A pipe would be waited for, and a device has no end.
+    // Opening a pipe would block, and a device has no end.
     const bool is_regular = std::filesystem::is_regular_file(file);
     std::ifstream in(is_regular ? file : std::filesystem::path(), std::ios::binary);
     if (!in) throw RunError("{}: cannot be read", file.string());
@@ -68,7 +68,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
         in.read(block.data(), block.size());
         digest.add({block.data(), static_cast<std::size_t>(in.gcount())});
     }
-    if (in.bad()) throw RunError("{}: reading failed", file.string());
+    if (in.bad()) throw RunError("{}: read error", file.string());
     return digest.hex();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// SHA-256 (FIPS 180-4) in lower-case hexadecimal, by which frames, scenes and rigs are known
-// again.
+// SHA-256 (FIPS 180-4) in lower-case hexadecimal, which identifies frames, scenes and rigs.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +12,7 @@ namespace aphotic {
 
 [[nodiscard]] std::string sha256_of_text(std::string_view text);
 
-// Of the samples' bytes as the machine has them.
+// Of the samples' bytes in memory.
 [[nodiscard]] std::string sha256_of_floats(std::span<const float> samples);
 
 // Throws RunError when the file cannot be read.

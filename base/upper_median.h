@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Of n numbers in order the one of rank n/2, counted from 0: the median, of an even count the upper
-// of the two in the middle. NaN of none.
+// The element of rank n/2 among n sorted numbers, counted from 0: the median, or the upper of the
+// two middle ones if n is even. NaN for none.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace aphotic {
 
-// Leaves the numbers in another order.
+// Reorders the numbers.
 template <typename T>
 [[nodiscard]] T upper_median(std::vector<T>& numbers) {
     if (numbers.empty()) return std::numeric_limits<T>::quiet_NaN();

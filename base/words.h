@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Words of what the command says: "1 frame", "2 frames"; a path as a shell takes it; ASCII in lower
+// Words for the command's output: "1 frame", "2 frames"; a path quoted for a shell; ASCII in lower
 // case.
 #pragma once
 
@@ -19,8 +19,8 @@ namespace aphotic {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-// What printf makes of a format in ASCII: a line break in a path is one for the shell, and steers
-// no terminal that shows the command. The shell drops a line break at the end.
+// The output of printf for an ASCII format: a newline in a path reaches the shell as one, and
+// steers no terminal that shows the command. The shell drops a newline at the end.
 [[nodiscard]] inline std::string printed_word(std::string_view word) {
     std::string format;
     for (const char c : word) {
@@ -37,7 +37,7 @@ namespace aphotic {
     return "\"$(printf '" + format + "')\"";
 }
 
-// For a line that a user may paste into a shell, whatever the path.
+// A path quoted so that a user may paste the line into a shell.
 [[nodiscard]] inline std::string shell_word(std::string_view path) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:,@%";

@@ -55,7 +55,7 @@ std::string line_of(const std::string& name, const JournalEntry& entry) {
     return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-// A line that was cut short, or that is not ours, tells of nothing.
+// A truncated or foreign line is ignored.
 std::optional<std::pair<std::string, JournalEntry>> entry_of(const std::string& line) {
     try {
         const nlohmann::json read = parse_json(line, "journal");
@@ -82,7 +82,7 @@ FolderLock::FolderLock(const fs::path& folder, FolderUse use)
     if (::flock(descriptor_, operation) == 0 || errno != EWOULDBLOCK) return;
     const std::string holder = holder_of(descriptor_);
     ::close(descriptor_);
-    throw RunError("{}: another aphotic is at work in this folder{}; allowed: one at a time",
+    throw RunError("{}: this folder is in use by another aphotic{}; allowed: one at a time",
                    folder.string(),
                    holder.empty() ? "" : fmt::format(" (process {})", holder));
 }
@@ -121,7 +121,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
     : folder_(folder), is_new_(!fs::exists(folder)), lock_(claim_folder(folder)) {}
 
 WorkFolder::~WorkFolder() {
-    std::error_code ignored;  // as where it is not empty
+    std::error_code ignored;  // as when it is not empty
     if (is_new_) fs::remove(folder_, ignored);
 }
 
@@ -212,7 +212,7 @@ void remove_joined(const fs::path& share, const std::vector<fs::path>& files) {
     for (const auto& entry : fs::recursive_directory_iterator(share)) {
         if (entry.is_directory()) folders.push_back(entry.path());
     }
-    // Those within before those around.
+    // Inner folders before outer ones.
     std::ranges::sort(folders, std::greater());
     for (const fs::path& folder : folders) fs::remove(folder, ignored);
 }

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A folder that long work writes to: one run at a time, which goes on where an interrupted one
-// stopped, alone or as one of several shares.
+// A folder for long work: one run at a time, which continues where an interrupted run stopped,
+// alone or as one of several shares.
 //
-// Lock. The kernel's own (flock) on the folder itself: no file of ours lies in the user's way, a
-// read-only folder can be locked too, and it is gone with the process that holds it, however that
-// ended. A kernel locks for itself alone: two machines in one network folder are not kept apart.
+// Lock: the kernel's own (flock) on the folder itself. No lock file is in the user's way, a
+// read-only folder can be locked too, and the lock ends with its process, however that ended. A
+// kernel's locks are local: two machines in one network folder do not exclude each other.
 //
-// Journal. What is done, noted as it is done: one line of JSON for each piece of work, appended
-// once its files are in their places. A line that an interruption cut short, or that is not ours,
-// is passed over when the journal is read again; of several lines of one name the last counts. A
-// piece of work counts as done while its digest, which stands for all that its result depends on,
-// is the same, and its files are there in the size that was noted.
+// Journal: finished work, one line of JSON per piece, appended once its files are in place. A line
+// that an interruption truncated, or that is not ours, is skipped when the journal is read; the
+// last of several lines with one name counts. A piece of work counts as done if its digest, which
+// covers everything its result depends on, is the same, and its files exist in the recorded size.
 //
-// Share. 2/4 is of each four pieces the second. Neighbours, such as the images of a dive, take
-// alike long, and so do shares of this kind. What a share makes goes to a folder of its own,
-// DIR/share-2-of-4, which no other task writes to. The same work without a share takes it from
-// there.
+// Share: 2/4 is every fourth piece, starting at the second. Neighbouring pieces, such as a dive's
+// images, take about equally long, so shares of this kind do too. A share writes to its own folder,
+// DIR/share-2-of-4, to which no other task writes. The same work without a share collects the
+// results from there.
 #pragma once
 
 #include <cstddef>
@@ -37,8 +36,8 @@ enum class FolderUse {
 
 class FolderLock {
   public:
-    // Does not wait: a RunError names the folder and, where the kernel tells it, the process that
-    // has it. Where the folder is missing, or its file system knows no locks, nothing is locked.
+    // Does not wait: a RunError names the folder and, if the kernel tells, the process that holds
+    // the lock. If the folder is missing, or its file system has no locks, nothing is locked.
     FolderLock(const std::filesystem::path& folder, FolderUse use);
     ~FolderLock();
     FolderLock(FolderLock&& other) noexcept;
@@ -48,17 +47,17 @@ class FolderLock {
     int descriptor_;
 };
 
-// The folder, made, taken from all other runs until the lock goes, and rid of what killed ones left
-// half written in it and in the folders below.
+// The folder, created and locked until the lock goes, and cleaned of what killed runs left partly
+// written in it and in the folders below.
 [[nodiscard]] FolderLock claim_folder(const std::filesystem::path& folder);
 
-// The same for a run that also reads what stands in another folder, which is not to change
-// meanwhile; it may be the same one.
+// The same for a run that also reads another folder, which must not change meanwhile; it may be the
+// same folder.
 [[nodiscard]] std::vector<FolderLock> claim_folders(const std::filesystem::path& written,
                                                     const std::filesystem::path& read);
 
-// The same for work that has nothing to write until much later: a folder that cannot be made is
-// found out before. It goes again where nothing came of it.
+// The same for work that writes only much later: a folder that cannot be made is found out early.
+// It is removed again if it stays empty.
 class WorkFolder {
   public:
     explicit WorkFolder(const std::filesystem::path& folder);
@@ -72,7 +71,7 @@ class WorkFolder {
     FolderLock lock_;
 };
 
-// What was counted in a piece of work, such as its doubtful pixels.
+// Counts from a piece of work, such as its doubtful pixels.
 using Counts = std::map<std::string, double>;
 
 struct JournalEntry {
@@ -88,18 +87,18 @@ inline constexpr std::size_t kMostJournal_bytes = std::size_t{4} << 30U;  // ten
 
 class Journal {
   public:
-    // Reads the journal, if there is one, and writes it anew without what no longer counts.
+    // Reads the journal, if there is one, and rewrites it without outdated lines.
     explicit Journal(std::filesystem::path file);
 
-    // Files are beside the journal or below.
+    // Files are next to the journal or below.
     [[nodiscard]] bool is_done(const std::string& name,
                                const std::string& digest,
                                const std::vector<std::filesystem::path>& files) const;
 
-    // None when there is nothing of that name.
+    // Null if there is nothing of that name.
     [[nodiscard]] Counts counts(const std::string& name) const;
 
-    // Not for several threads at once. A RunError when it cannot be written.
+    // Not thread-safe. A RunError if it cannot be written.
     void note(const std::string& name,
               const std::string& digest,
               const std::vector<std::filesystem::path>& files,
@@ -122,7 +121,7 @@ struct WorkShare {
 
 inline constexpr std::size_t kMostShares = 100000;
 
-// Of "2/4". Throws InputError.
+// From "2/4". Throws InputError.
 [[nodiscard]] WorkShare parse_share(std::string_view text);
 
 template <typename Piece>
@@ -134,14 +133,15 @@ template <typename Piece>
     return own;
 }
 
-// The folder itself, of all the work.
+// The folder of the whole work.
 [[nodiscard]] std::filesystem::path share_folder(const std::filesystem::path& folder,
                                                  WorkShare share);
 
-// Those that are there, of whatever shares, sorted by name.
+// Existing folders of all shares, sorted by name.
 [[nodiscard]] std::vector<std::filesystem::path> share_folders(const std::filesystem::path& folder);
 
-// Removes these files of a share's folder, and then it and all folders in it that are empty.
+// Removes these files from a share's folder, and then the folder and its subfolders if they are
+// empty.
 void remove_joined(const std::filesystem::path& share,
                    const std::vector<std::filesystem::path>& files);
 

@@ -59,7 +59,7 @@ struct ShownBeam {
     std::optional<double> export_error;
 };
 
-// Of a file, which is as bright as it says: a lamp of its own lumens.
+// For a file, which is as bright as it states: a lamp of its own lumens.
 void take_file(const std::string& file, ShownBeam& shown) {
     if (rig_settings()) throw InputError("--set: found with {}; allowed: with a rig", file);
     const PhotometricFile read = read_photometric_file(file);
@@ -162,7 +162,7 @@ void print(const ShownBeam& shown) {
     }
     if (stated_lm) say("  the file states     {:.6g} lm\n", *stated_lm);
     if (fit) {
-        say("  {} sharp cone{} err by {:.1f} % rms:\ncones = [\n",
+        say("  fit of {} sharp cone{}, {:.1f} % rms error:\ncones = [\n",
             fit->cones.size(),
             fit->cones.size() == 1 ? "" : "s",
             100.0 * fit->error);
@@ -189,7 +189,7 @@ void plot(const Beam& beam, const std::string& file) {
                    .x_label = "angle off the axis [degrees]",
                    .y_label = "intensity [1/sr]",
                    .curves = {}};
-    Plot polar{.title = "as thrown, the axis up",
+    Plot polar{.title = "as thrown, axis up",
                .x_label = "intensity times the sine [1/sr]",
                .y_label = "intensity times the cosine [1/sr]",
                .curves = {}};
@@ -217,7 +217,7 @@ void plot(const Beam& beam, const std::string& file) {
     write_plots(std::vector<Plot>{cartesian, polar}, file);
 }
 
-// For the first lamp whose lumens are known; else for a thousand.
+// For the first lamp whose lumens are known; otherwise for a thousand.
 double exported_flux_lm(const std::vector<BeamUser>& users) {
     for (const BeamUser& user : users) {
         if (user.luminous_flux_lm) return *user.luminous_flux_lm;

@@ -17,7 +17,7 @@ enum ExitStatus : int {
     kRunFailed = 3,   // POV-Ray or the file system failed
 };
 
-// What a subcommand does once its options are parsed. Throws InputError or RunError.
+// The action of a subcommand after its options are parsed. Throws InputError or RunError.
 using Action = std::function<ExitStatus()>;
 
 struct Command {

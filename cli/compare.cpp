@@ -104,7 +104,7 @@ void print_unpaired(const ComparedImages& images) {
     };
     print(images.only_in_image, "only in " + images.image);
     print(images.only_in_reference, "only in " + images.reference);
-    print(images.left_aside, "left aside");
+    print(images.left_aside, "not compared");
 }
 
 std::string figure(const std::optional<double>& value) {
@@ -154,7 +154,7 @@ void print_images(const Compared& compared) {
         images.are_within() ? "within" : "NOT within",
         compared.bound,
         images.reference,
-        images.scaled ? ", but for its scale" : "");
+        images.scaled ? ", apart from its scale" : "");
     if (images.unpaired() > 0) {
         say("but {} WITHOUT a partner in the other image; --channels names those to compare\n",
             counted(images.unpaired(), "channel"));

@@ -14,7 +14,7 @@
 namespace aphotic::cli {
 namespace {
 
-// What an option or argument takes.
+// The kind of value that an option or argument takes.
 struct Taken {
     enum class Kind { Nothing, Text, Words, File, Folder };
     Kind kind = Kind::Text;
@@ -55,7 +55,7 @@ bool contains(std::initializer_list<std::string_view> words, std::string_view wo
     return std::ranges::find(words, word) != words.end();
 }
 
-// By the type's name: TEXT:{a,b} or a|b are words, FILE.svg and RIG are files.
+// From the type's name: TEXT:{a,b} or a|b are words, FILE.svg and RIG are files.
 Taken taken_by(const CLI::App& app, const CLI::Option& option) {
     Taken taken{.is_many = option.get_items_expected_max() > 1};
     const std::string type = option.get_positional() && option.get_type_name() == "TEXT"
@@ -129,7 +129,7 @@ std::string escaped(std::string_view text, std::string_view marks) {
     return result;
 }
 
-// How a shell is told what may come.
+// How a shell is told the possible values.
 struct ShellActions {
     std::string_view words;      // with their place
     std::string_view files;      // of any kind

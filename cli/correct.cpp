@@ -56,7 +56,7 @@ void print_scale(const LightAt& light) {
         light.size.height_px);
 }
 
-// One number where all channels have it, as of a mono camera.
+// One number if all channels have it, as for a mono camera.
 std::string gain_words(const PerChannel& gain) {
     if (gain[0] == gain[1] && gain[1] == gain[2]) return fmt::format("{:.6g}", gain[0]);
     return fmt::format("{:.6g} (R), {:.6g} (G), {:.6g} (B)", gain[0], gain[1], gain[2]);
@@ -106,8 +106,9 @@ void print_baseline(const CorrectionReport& report, const Survey& survey) {
     if (report.srgb) print_srgb(*report.srgb, report.folder);
 }
 
-// The planes of one image have the sizes of those of the next: their memory is kept for them. Given
-// back to the system, each of its pages would be cleared anew, a tenth of the processor's time.
+// Memory of an image's planes is kept for the next image, which has the same sizes. If it were
+// returned to the system, each of its pages would be cleared again, a tenth of the processor's
+// time.
 void keep_memory() {
 #ifdef __GLIBC__
     ::mallopt(M_ARENA_MAX, 1);  // those of threads hold no large planes
@@ -116,7 +117,7 @@ void keep_memory() {
 #endif
 }
 
-// Where the sled was highest, and most is left out.
+// At the highest altitude, where the model leaves out most.
 std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options,
                                             Rig rig,
                                             const Survey& survey) {
@@ -129,7 +130,7 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
 void expect_size_of(const LightAt& light, CameraNumbers& camera) {
     if (!camera.expected) camera.expected.emplace();
     camera.expected->image = light.size;
-    camera.expected->as = "as the map has";
+    camera.expected->as = "like the map";
 }
 
 // What is asked for, and of water that scatters what the model leaves out.
@@ -206,7 +207,7 @@ void take_noise(CorrectCommandOptions& options, const Readout& readout) {
     if (!options.correction.read_noise) options.correction.read_noise = dark_noise_dn(readout);
 }
 
-// Read before anything is corrected, that a fault in it costs nothing.
+// Read before anything is corrected, so that a fault in it costs nothing.
 struct IfdoTask {
     Ifdo of_raw;
     std::filesystem::path place;
@@ -258,7 +259,7 @@ ExitStatus correct(CorrectCommandOptions options) {
         print_report(report, survey, correction.run.folder, correction.report);
         print_model_error(model);
     }
-    // Of a share it would be of images that are not there.
+    // With a share it would cover images that are missing here.
     if (task && correction.share.is_whole()) write_ifdo(*task, options, survey, report);
     const std::size_t skipped = report.run->skipped.size();
     const std::size_t images = report.run->corrected + report.run->kept + skipped;
@@ -321,7 +322,7 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
     add_option(app, "--bin", options.bin_m)->check(in_range(1e-3, 1e4));
 }
 
-// What both commands take, but for the images and what comes of them.
+// Options of both commands, except images and results.
 Action configure_run(CLI::App& app,
                      const std::shared_ptr<CorrectCommandOptions>& options,
                      const Settle& settle) {

@@ -39,7 +39,7 @@ constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // what cameras and lamps 
 constexpr double kPlotSalinity_psu = 35.0;
 constexpr double kPlotTemperature_c = 10.0;
 
-// In this order; others follow in theirs.
+// In this order; others follow in their own.
 constexpr std::string_view kMetadataKeys =
     "title,role,quantity,unit,kind,form,formula,range,source,obtained,uncertainty,terms";
 
@@ -263,7 +263,7 @@ void refuse_to_overwrite(const std::vector<NewTable>& tables) {
     }
 }
 
-// Every file is whole before the first takes its place.
+// Every file is complete before the first is renamed.
 void write_all(const std::vector<NewTable>& tables) {
     std::list<AtomicFile> files;
     for (const NewTable& table : tables) {
@@ -277,11 +277,11 @@ void write_all(const std::vector<NewTable>& tables) {
 
 void note_what_differs(const SplineFile& found, const std::string& file) {
     for (const std::size_t line : found.anonymous_lines) {
-        warn("{}:{}: passed over a spline without a name", file, line);
+        warn("{}:{}: skipped a spline without a name", file, line);
     }
     for (const SplineSpectrum& spectrum : found.spectra) {
         if (spectrum.is_linear()) continue;
-        warn("{}:{}: {} is a {}: its knots are taken, and joined by straight lines",
+        warn("{}:{}: {} is a {}: its knots are joined by straight lines",
              file,
              spectrum.line,
              spectrum.identifier,

@@ -66,7 +66,7 @@ DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
 void print_design(const Rig& rig, const DesignRequest& request, const DesignResult& result) {
     const LightFigures& start = result.start.figures;
     const LightFigures& best = result.best.figures;
-    say("{}: {}, {} looked at; the worst of {}\n",
+    say("{}: {}, {} evaluated; the worst of {}\n",
         rig.title,
         counted(result.numbers, "free number"),
         counted(static_cast<std::size_t>(result.evaluations), "design"),

@@ -78,7 +78,7 @@ bool is_given(const CLI::App& app, const std::string& option) {
     return app.count(option) > 0;
 }
 
-// Options of images, which say nothing of maps; all that --nav needs are found out with it.
+// Options for images, meaningless for maps; everything that --nav needs is checked with it.
 constexpr std::array kOfImages{"--nav",
                                "--depth-map",
                                "--relief",
@@ -97,7 +97,7 @@ void require_use(const CLI::App& app) {
     }
 }
 
-// The rig to begin with is kept.
+// The starting rig is kept.
 void require_other_rig(const FitCommandOptions& options) {
     std::error_code error;
     if (!std::filesystem::equivalent(options.input.rig, options.folder / kFittedRig, error)) return;
@@ -117,10 +117,10 @@ void require_one_source(const CLI::App& app) {
             "--images: found no navigation; allowed: with --nav FILE, or --depth-map DIR");
 }
 
-// As WORD=SPREAD, where the unit may follow: aim=2deg, altitude=0.1m.
-std::map<std::string, double> priors_in(const std::vector<std::string>& told) {
+// As WORD=SPREAD, possibly with a unit: aim=2deg, altitude=0.1m.
+std::map<std::string, double> priors_in(const std::vector<std::string>& given) {
     std::map<std::string, double> priors;
-    for (const std::string& one : told) {
+    for (const std::string& one : given) {
         const std::size_t at = one.find('=');
         const std::string word = one.substr(0, at);
         std::string_view number = std::string_view(one).substr(std::min(at, one.size() - 1) + 1);
@@ -148,7 +148,7 @@ void print_confounded(const std::vector<Confounded>& pairs) {
         say("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
     }
     if (shown < pairs.size())
-        say("confounded: {} pairs more, in {}\n", pairs.size() - shown, kFitNumbers);
+        say("confounded: {} more pairs, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
 void print_result(const std::string& title,

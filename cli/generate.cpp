@@ -37,7 +37,7 @@ ExitStatus write_quick_look(const GenerateCommandOptions& options) {
     const Rig rig = read_plausible_rig(options.planning.rig_file, options.planning.strict);
     write_text_file(options.quick_look,
                     quick_look_sdl(rig, fs::path(options.planning.rig_file).parent_path()));
-    say("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
+    say("{}: this rig for a quick look with aphotic.inc\n", options.quick_look);
     return kDone;
 }
 
@@ -55,8 +55,8 @@ nlohmann::ordered_json to_json(const Generated& made) {
     return json;
 }
 
-// What renders all frames. Of a user's scene plain povray runs in its folder: paths from there, so
-// that both may be carried elsewhere.
+// The command that renders all frames. For a user's scene plain povray runs in its folder: paths
+// are relative to it, so that both can be moved.
 std::string povray_loop(const Generated& made) {
     if (made.own_scene.empty()) {
         return fmt::format(

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kColumns = 80;
 constexpr std::size_t kNameColumns = 26;
 
-// Lines break at blanks, and where the text breaks them.
+// Wraps lines at blanks, and keeps the text's own breaks.
 std::string wrapped(const std::string& text, std::size_t columns) {
     std::string result;
     std::istringstream paragraphs(text);
@@ -32,7 +32,7 @@ std::string wrapped(const std::string& text, std::size_t columns) {
     return result;
 }
 
-// A type's name is such as "INT:1 to 48" or "TEXT:{tiff,png,exr}": what it is, and what is allowed.
+// A type's name is such as "INT:1 to 48" or "TEXT:{tiff,png,exr}": the kind, and what is allowed.
 struct OptionType {
     explicit OptionType(const std::string& name)
         : word(name.substr(0, name.find(':'))),
@@ -66,7 +66,7 @@ std::string HelpFormatter::make_group(std::string group,
                                       bool is_positional,
                                       std::vector<const CLI::Option*> options) const {
     const std::string text = Formatter::make_group(std::move(group), is_positional, options);
-    return is_positional ? text : text.substr(1);  // CLI11 parts groups by two empty lines
+    return is_positional ? text : text.substr(1);  // CLI11 separates groups by two empty lines
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {

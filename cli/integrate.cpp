@@ -39,7 +39,7 @@ struct IntegrateCommandOptions {
     bool json = false;
 };
 
-// Beside the frames' own images, so that neither takes the other's place.
+// Next to the frames' own images, so that neither replaces the other.
 fs::path images_folder(const IntegrateCommandOptions& options) {
     if (!options.images_folder.empty()) return options.images_folder;
     if (options.rig_file.empty()) return options.folder;
@@ -54,8 +54,8 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
     for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
         if (!fs::exists(notes)) continue;
         throw InputError(
-            "{}: found the notes of a render or trace; allowed: a folder without, as these images "
-            "would replace its own",
+            "{}: found the record of a render or trace; allowed: a folder without one, since these "
+            "images would replace its own",
             notes.string());
     }
 }
@@ -76,7 +76,7 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
     return manifest;
 }
 
-// What the image is made of, for whoever finds it later.
+// The provenance of the image, for whoever finds it later.
 Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest) {
     Json account{{"rig_title", manifest.rig_title},
                  {"rig_sha256", manifest.rig_sha256},
@@ -102,7 +102,7 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
         const FolderLock lock(options.folder, FolderUse::Write);
         join_frames(options.folder);
     }
-    // Frames that cannot serve, and images that have no room, leave no folder behind.
+    // Unusable frames, and images without disk space, leave no folder behind.
     require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it

@@ -57,7 +57,7 @@ struct LightmapCommandOptions {
     bool json = false;
 };
 
-// Of FROM:TO:STEP, both ends with it; none where the steps do not end there.
+// From FROM:TO:STEP, both ends included; empty if the steps do not end at TO.
 std::vector<double> range_of(double from, double to, double step) {
     constexpr double kMostSteps = 10000.0;
     constexpr double kWhole = 1e-6;
@@ -378,7 +378,7 @@ ExitStatus run_lightmap(LightmapCommandOptions options) {
     const std::size_t altitudes = options.altitude_m.size();
     const bool is_folder = altitudes > 1 || !options.export_as.empty();
     if (is_folder && fs::path(options.output).extension() == ".exr") {
-        throw InputError("--output: found {}; allowed: a folder, of what is by altitude",
+        throw InputError("--output: found {}; allowed: a folder, for several altitudes or --export",
                          options.output);
     }
     if (is_folder && !options.preview_file.empty()) {

@@ -76,13 +76,13 @@ ExitStatus run(const Action& action, const std::string& keeps) {
         warn("out of memory");
         return kRunFailed;
     } catch (const std::exception& error) {
-        // The standard library's own words, around a name that may hold anything.
+        // The standard library's own message, around a name that may hold anything.
         warn_text(aphotic::shown_text(error.what()));
         return kRunFailed;
     }
 }
 
-// What the parser says of itself, whatever else is on the line.
+// The parser's messages about itself, whatever else is on the line.
 void add_manual(CLI::App& app, Action& chosen) {
     app.add_flag_callback(
            "--man-page",
@@ -139,13 +139,13 @@ std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    // A file over the limit of its size (ulimit -f) is to be an error with its name, and the end of
-    // POV-Ray is to be seen, whoever started us.
+    // A file over the size limit (ulimit -f) should be an error with its name, and the end of
+    // POV-Ray must be seen, whatever signal settings we inherited.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL);
 #ifdef __GLIBC__
-    // Large buffers are kept for the next piece of work, for getting them anew page by page takes a
-    // third of a fit's time.
+    // Large buffers are kept for the next piece of work, since fetching them again page by page
+    // takes a third of a fit's time.
     mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max());
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif

@@ -23,16 +23,15 @@ std::optional<ManifestModel> model_error(const Rig& rig,
     if (!rig.water.scatters()) return std::nullopt;
     ProgressLine line;
     const ModelCheck check = check_model(rig, kModelPaths, all_cores(), [&](double share) {
-        line.show("estimating what the model leaves out", share);
+        line.show("estimating the model error", share);
     });
     const ManifestModel model{.error = check.rms()};
     const auto worst = std::ranges::max_element(model.error);
     if (*worst > tolerance) {
         throw InputError(
-            "{}: found an estimated {:.2g} of {}'s signal (rms, at {} m) in what the model of "
-            "water "
-            "that scatters leaves out: light that is turned more than once, and blur; allowed: "
-            "--model-tolerance {}. Lower altitudes and wider beams have less of it",
+            "{}: found an estimated {:.2g} of {}'s signal (rms, at {} m) in what the model leaves "
+            "out of water that scatters: light scattered more than once, and blur; allowed: "
+            "--model-tolerance {}. Lower altitudes and wider beams reduce it",
             rig_file,
             *worst,
             kChannelNames[static_cast<std::size_t>(worst - model.error.begin())],
@@ -44,8 +43,7 @@ std::optional<ManifestModel> model_error(const Rig& rig,
 
 void print_model_error(const std::optional<ManifestModel>& model) {
     if (!model) return;
-    say("  what the model of scattering leaves out is estimated at {:.2g} (R), {:.2g} (G), {:.2g} "
-        "(B), rms\n",
+    say("  model error estimate, of scattering: {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n",
         model->error[0],
         model->error[1],
         model->error[2]);

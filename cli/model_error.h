@@ -19,7 +19,7 @@ inline constexpr double kModelTolerance = 0.1;
 
 void add_model_tolerance(CLI::App& app, double& tolerance);
 
-// None for water that does not scatter. Throws InputError over the tolerance.
+// Empty for water that does not scatter. Throws InputError if it exceeds the tolerance.
 [[nodiscard]] std::optional<ManifestModel> model_error(const Rig& rig,
                                                        const std::string& rig_file,
                                                        double tolerance);

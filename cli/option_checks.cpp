@@ -22,7 +22,7 @@ bool is_written(const CLI::Option& option) {
                                [&](const char* name) { return option.check_lname(name); });
 }
 
-// The file itself, or what stands below a folder.
+// The file itself, or anything below a folder.
 bool takes_place_of(const fs::path& file, const fs::path& named) {
     std::error_code ignored;
     if (fs::equivalent(file, named, ignored)) return true;
@@ -32,7 +32,7 @@ bool takes_place_of(const fs::path& file, const fs::path& named) {
     return inner.starts_with(outer);
 }
 
-// What is no number the parser says itself.
+// The parser itself reports anything that is not a number.
 std::optional<double> number_in(const std::string& text) {
     double number = 0.0;
     return CLI::detail::lexical_cast(text, number) ? std::optional(number) : std::nullopt;
@@ -67,12 +67,12 @@ void require_extension(CLI::Option& option, const std::string& extension) {
         "");
 }
 
-// "" is what a script passes for a variable that it never set: no folder of that name can be meant,
-// least of all the one that the command runs in.
+// "" is a script's unset variable: no folder of that name can be meant, least of all the current
+// one.
 void refuse_no_name(CLI::Option& option) {
     option.check(
         [](const std::string& text) {
-            return text.empty() ? "found an empty text; allowed: a name" : "";
+            return text.empty() ? "found an empty string; allowed: a name" : "";
         },
         "");
 }
@@ -127,7 +127,7 @@ void require_separate_files(const CLI::App& command) {
                 const bool takes =
                     !is_written(*other) && fs::is_regular_file(file) && takes_place_of(file, named);
                 if (!is_same && !takes) continue;
-                throw InputError("{}: found {}, which {} names too; allowed: a file of its own",
+                throw InputError("{}: found {}, which {} also names; allowed: a different file",
                                  written->get_name(),
                                  file.string(),
                                  other->get_name());

@@ -19,12 +19,12 @@
 
 namespace aphotic::cli {
 
-// A number from least to most; over 0; from 0 up. The last two are finite.
+// A number from least to most; above 0; from 0 up. The last two are finite.
 [[nodiscard]] CLI::Validator in_range(double least, double most);
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
 
-// One of these words, for what it stands for.
+// One of these words, for its value.
 template <class Value>
 [[nodiscard]] CLI::Validator word_of(const std::map<std::string, Value>& words) {
     return {[words](std::string& text) {
@@ -40,7 +40,7 @@ template <class Value>
             ""};
 }
 
-// What this throws an InputError at.
+// Refuses values for which this throws an InputError.
 template <typename Read>
 [[nodiscard]] CLI::Validator refused_by(const Read& read) {
     return {[read](const std::string& text) {
@@ -54,14 +54,14 @@ template <typename Read>
             ""};
 }
 
-// An option whose text `read` makes a value of; what that throws an InputError at is refused.
+// An option whose text `read` converts to a value; an InputError from it refuses the text.
 template <typename Value, typename Read>
 CLI::Option* add_read(CLI::App& app, const std::string& name, Value& value, const Read& read) {
     const auto take = [&value, read](const std::string& text) { value = read(text); };
     return add_option_function<std::string>(app, name, take)->check(refused_by(read));
 }
 
-// Of a reader that gives nothing where the text is none of what is allowed.
+// For a reader that returns nothing if the text is invalid.
 template <typename Read>
 auto read_by(const Read& read, const std::string& allowed) {
     return [read, allowed](const std::string& text) {
@@ -72,15 +72,15 @@ auto read_by(const Read& read, const std::string& allowed) {
 }
 
 // Every option of the command that takes a number refuses NaN, which no range does; one that names
-// what is read or written refuses the empty name; and one that writes a file of one format, whose
-// type name is such as FILE.exr, refuses other extensions.
+// a file or folder refuses the empty name; and one that writes a file of one format, whose type
+// name is such as FILE.exr, refuses other extensions.
 void add_common_checks(CLI::App& command);
 
-// Once parsed: the files and folders that the options name to be written.
+// After parsing: the files and folders that the options name for output.
 [[nodiscard]] std::vector<std::filesystem::path> written_places(const CLI::App& command);
 
-// Once parsed: throws InputError when a file to be written is one that another option names, or
-// one that stands in a folder that another option names.
+// After parsing: throws InputError if an output file is also named by another option, or lies in a
+// folder that another option names.
 void require_separate_files(const CLI::App& command);
 
 }  // namespace aphotic::cli

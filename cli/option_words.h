@@ -22,12 +22,11 @@ struct CommandText {
 
 namespace cli {
 
-// A file of cli/ that travels inside the command: options.toml, and what the manual page ends and
-// bash's completion begins with.
+// A file of cli/ embedded in the command: options.toml, and the ends of the manual page and the
+// start of bash's completion.
 [[nodiscard]] std::string_view command_text(std::string_view file);
 
-// Says what the command is, under which heading of the list it stands, and what stands below its
-// options.
+// Sets the command's summary, its heading in the list, and its footer.
 void describe(CLI::App& command);
 
 // What an interrupted run of it leaves, and how to go on.
@@ -36,7 +35,7 @@ void describe(CLI::App& command);
 // All spellings of an option or argument of the command, by the first long one: "--output".
 [[nodiscard]] std::string spellings_of(const CLI::App& command, const std::string& name);
 
-// Says what the option takes and means, and its default.
+// Sets what the option takes, its description, and its default.
 CLI::Option* described(const CLI::App& command, const std::string& name, CLI::Option* option);
 
 template <typename Value>
@@ -44,14 +43,14 @@ CLI::Option* add_option(CLI::App& app, const std::string& name, Value& value) {
     return described(app, name, app.add_option(spellings_of(app, name), value));
 }
 
-// take(text) is called with what is given.
+// take(text) is called with the value.
 template <typename Value, typename Take>
 CLI::Option* add_option_function(CLI::App& app, const std::string& name, Take take) {
     CLI::Option* option = app.add_option_function<Value>(spellings_of(app, name), std::move(take));
     return described(app, name, option);
 }
 
-// A value that is set, or what is called when the flag is given.
+// A value to set, or a function to call if the flag is given.
 template <typename Value>
 CLI::Option* add_flag(CLI::App& app, const std::string& name, Value&& value) {
     const std::string names = spellings_of(app, name);

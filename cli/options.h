@@ -23,16 +23,16 @@
 
 namespace aphotic::cli {
 
-// What a rig may have, and what stands for it.
+// The possible values of an option, and their meaning.
 inline constexpr double kLeastAltitude_m = 0.001;
 inline constexpr double kMostAltitude_m = 10000.0;
 inline constexpr double kMostTilt_deg = 89.9;
 
-// Threads that the command may take: one for each core, or fewer by --jobs once that is parsed.
+// Threads that the command may use: one per core, or fewer by --jobs once that is parsed.
 [[nodiscard]] int all_cores();
 void take_no_more_cores_than(int jobs);
 
-// Options that are added while it lives stand under this heading of --help.
+// Options added during its life are listed under this heading of --help.
 class OptionGroup {
   public:
     OptionGroup(CLI::App& app, const std::string& name) : app_(app) {
@@ -64,7 +64,7 @@ void add_jobs(CLI::App& app, Count& jobs) {
         });
 }
 
-// I/N, of work that other machines share.
+// I/N, of work shared with other machines.
 CLI::Option* add_share(CLI::App& app, const std::string& name, WorkShare& share);
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
@@ -77,7 +77,7 @@ struct PlanningOptions {
     PlanRequest plan{};  // but for what request_of() in planning.cpp makes of the others
     std::vector<double> paths_m;
     std::vector<int> emitter_lamps;
-    bool renders = false;  // otherwise a scene that the rig names is left alone
+    bool renders = false;  // otherwise a scene that the rig names is ignored
     std::string scene;
     std::vector<std::string> library_paths;
     bool unchecked = false;

@@ -28,7 +28,7 @@ void show(const Result& result, bool as_json) {
     }
 }
 
-// The images in a folder, and what signals they hold.
+// The images in a folder, and their signals.
 struct MadeImages {
     struct Signal {
         float least = 0.0F;
@@ -52,8 +52,8 @@ struct Integration {
     double seconds = 0.0;
 };
 
-// Integrates the frames of `folder` into `images`, the same folder or another: then the signals
-// alone. Writes image.exr, spectral.exr and preview.png.
+// Integrates the frames of `folder` into `images`, the same folder or another, which gets the
+// signals only. Writes image.exr, spectral.exr and preview.png.
 [[nodiscard]] Integration integrate_folder(const std::filesystem::path& folder,
                                            const Manifest& manifest,
                                            const PreviewOptions& preview,
@@ -61,14 +61,14 @@ struct Integration {
 [[nodiscard]] nlohmann::ordered_json to_json(const Integration& integration);
 void print(const Integration& integration);
 
-// The error bound of a plan or manifest, per channel: error, amplification and promise. Null where
-// a scene of the user's voids it; no_promise in the JSON then says why.
+// The error bound of a plan or manifest, per channel: error, amplification and promise. Null if a
+// user's scene voids it; no_promise in the JSON then gives the reason.
 void put_promises(nlohmann::ordered_json& json, const Manifest& manifest);
 
 // Why there is no error bound, for people.
 void print_no_promise(const std::vector<std::string>& reasons);
 
-// A line on the veil, where POV-Ray makes it.
+// A line about the veil, if POV-Ray renders it.
 [[nodiscard]] std::string povray_veil_in_words(const Manifest& manifest);
 
 }  // namespace aphotic::cli

@@ -40,7 +40,7 @@ std::uint64_t scenes_bytes(const SceneSet& scenes) {
     return bytes;
 }
 
-// What the folder's own scenes include is there, in full; scenes are of one length.
+// What the folder's own scenes include exists, complete; scenes have one length.
 std::uint64_t parsed_bytes(const fs::path& folder) {
     std::uint64_t includes = 0;
     std::uint64_t longest = 0;
@@ -51,7 +51,7 @@ std::uint64_t parsed_bytes(const fs::path& folder) {
     return includes + longest;
 }
 
-// A manifest that cannot be read is the render's to complain of.
+// An unreadable manifest is reported by the render.
 std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     if (folder.empty() || !fs::exists(manifest_path(folder))) return std::nullopt;
     try {
@@ -89,7 +89,7 @@ void require_room(const ResourceNeeds& needs, const fs::path& folder, bool ignor
     const std::string lacking = shortage(needs, free, folder.string());
     if (lacking.empty()) return;
     throw RunError(
-        "{}. Nothing was begun; --ignore-needs begins all the same, for images often compress",
+        "{}. Nothing was started; --ignore-needs starts anyway, since images often compress",
         lacking);
 }
 
@@ -105,10 +105,11 @@ int jobs_that_fit(const ResourceNeeds& needs, int jobs) {
     const std::uint64_t free_bytes = free_memory_bytes();
     const int fitting = jobs_with_memory(needs, free_bytes, jobs);
     if (static_cast<std::uint64_t>(jobs) * needs.job_memory_bytes > free_bytes) {
-        warn("renders {} at a time, for POV-Ray takes up to {} of memory for each, and {} are free",
-             counted(static_cast<std::size_t>(fitting), "frame"),
-             bytes_in_words(needs.job_memory_bytes),
-             bytes_in_words(free_bytes));
+        warn(
+            "renders {} at a time, since POV-Ray takes up to {} of memory for each, and {} is free",
+            counted(static_cast<std::size_t>(fitting), "frame"),
+            bytes_in_words(needs.job_memory_bytes),
+            bytes_in_words(free_bytes));
     }
     return fitting;
 }

@@ -17,33 +17,33 @@ namespace aphotic::cli {
 
 void add_needs_option(CLI::App& app, bool& ignore_needs);
 
-// Throws RunError, which says what is needed and what is free, unless it is to be ignored.
+// Throws RunError, with what is needed and what is free, unless it is to be ignored.
 void require_room(const ResourceNeeds& needs,
                   const std::filesystem::path& folder,
                   bool ignore_needs);
 
-// Of a render of these scenes into the folder. Frames that an earlier run left there of the same
-// scenes are kept, and take no more room. Without a folder, none are there.
+// For a render of these scenes into the folder. Frames that an earlier run left there for the same
+// scenes are kept, and need no more room. Without a folder, there are none.
 [[nodiscard]] ResourceNeeds needs_of(const SceneSet& scenes,
                                      const std::filesystem::path& folder,
                                      int jobs);
 
-// As many of the jobs as have memory, and a warning where these are fewer.
+// As many of the jobs as fit in memory, with a warning if that is fewer.
 [[nodiscard]] int jobs_that_fit(const ResourceNeeds& needs, int jobs);
 
-// Before a render: whether the folder may take these scenes, and has room for what comes of them.
-// Returns the jobs that fit.
+// Before a render: checks that the folder may take these scenes, and has room for the results.
+// Returns the number of jobs that fit.
 [[nodiscard]] int require_place_and_room(const SceneSet& scenes,
                                          const std::filesystem::path& folder,
                                          int jobs,
                                          bool ignore_needs);
 
-// Of a share of the frames of scenes that are in the folder, into the share's own.
+// For a share of the frames of scenes in the folder, into the share's own.
 [[nodiscard]] ResourceNeeds needs_of_share(const std::filesystem::path& folder,
                                            WorkShare share,
                                            int jobs);
 
-// Of scenes and manifest alone.
+// For scenes and manifest only.
 [[nodiscard]] ResourceNeeds needs_of_scenes(const SceneSet& scenes);
 
 [[nodiscard]] ImageSize image_size(const Manifest& manifest);

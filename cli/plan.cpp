@@ -71,7 +71,7 @@ Json wavelengths_of(const Manifest& manifest) {
     return all;
 }
 
-// What a render into an empty folder would take, as many frames at a time as there are cores.
+// What a render into an empty folder would need, with as many frames at a time as there are cores.
 struct PlannedNeeds {
     ResourceNeeds render;
     FileSizes files;
@@ -357,9 +357,9 @@ Plot error_panel(const Rig& rig, const RenderPlan& plan) {
     return panel;
 }
 
-// The light that each material can send, by its shortest and its longest path, with the wavelengths
-// marked; and below it the error of each channel over path length, of the material on which it is
-// largest.
+// The light that each material can send, over its shortest and its longest path, with the
+// wavelengths marked; and below it the error of each channel over path length, for the material
+// with the largest.
 void plot_plan(const Rig& rig, const RenderPlan& plan, const std::filesystem::path& file) {
     write_plots(std::array{light_panel(rig, plan), error_panel(rig, plan)}, file);
 }

@@ -22,8 +22,8 @@
 namespace aphotic::cli {
 namespace {
 
-// Settings of POV-Ray's own that change its speed. Others would change what a frame holds: Quality
-// below 9 leaves out the water, gamma and format are the integrator's.
+// POV-Ray settings that change only its speed. Others would change a frame's contents: Quality
+// below 9 omits the water, gamma and format are the integrator's.
 constexpr std::string_view kSpeedKeys =
     "Bounding, Bounding_Method, Bounding_Threshold, BSP_BaseAccessCost, BSP_ChildAccessCost, "
     "BSP_IsectCost, BSP_MaxDepth, BSP_MissChance, Light_Buffer, Remove_Bounds, Render_Block_Size, "
@@ -68,7 +68,7 @@ PlanRequest request_of(const PlanningOptions& options) {
     return request;
 }
 
-std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions& options) {
+std::shared_ptr<const UserScene> probed(const Rig& rig, const PlanningOptions& options) {
     const std::filesystem::path scene =
         options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
     if (!options.renders || scene.empty()) {
@@ -82,20 +82,20 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
     for (const std::string& number : options.declared)
         ini_lines.push_back("Declare=" + number + "\n");
     ProgressLine line;
-    auto surveyed_scene = std::make_shared<const UserScene>(
-        survey_scene(find_povray(options.povray),
-                     rig,
-                     scene,
-                     {.jobs = all_cores(),
-                      .library_paths = options.library_paths,
-                      .progress = [&](double share) { line.show("probing the scene", share); },
-                      .stall_s = options.stall_timeout_s,
-                      .ini_lines = std::move(ini_lines),
-                      .unchecked = options.unchecked}));
-    for (const std::string& reason : surveyed_scene->no_promise) {
+    auto probed_scene = std::make_shared<const UserScene>(
+        probe_scene(find_povray(options.povray),
+                    rig,
+                    scene,
+                    {.jobs = all_cores(),
+                     .library_paths = options.library_paths,
+                     .progress = [&](double share) { line.show("probing the scene", share); },
+                     .stall_s = options.stall_timeout_s,
+                     .ini_lines = std::move(ini_lines),
+                     .unchecked = options.unchecked}));
+    for (const std::string& reason : probed_scene->no_promise) {
         warn("{}: no promise: {}", scene.string(), reason);
     }
-    return surveyed_scene;
+    return probed_scene;
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ PlannedRender plan_rig(const PlanningOptions& options) {
     }
     PlanRequest request = request_of(options);
     const auto start = std::chrono::steady_clock::now();
-    request.scene.user_scene = surveyed(rig, options);
+    request.scene.user_scene = probed(rig, options);
     const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
     RenderPlan plan = [&] {
         ProgressLine line;

@@ -24,19 +24,19 @@ struct PlannedRender {
     std::optional<ManifestModel> model{};  // of water that scatters
 };
 
-// Reads the rig, surveys the user's own scene where there is one, plans, and estimates what the
+// Reads the rig, probes the user's scene if there is one, plans, and estimates what the
 // model leaves out. Messages name the rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 
 [[nodiscard]] SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options);
 
-// The POV-Ray that the options name. Where there is none that serves, the message also says what
-// makes the same images without it: not of a scene of the user's own, which the tracer cannot read.
+// The POV-Ray that the options name. If none works, the message also names the command that makes
+// the same images without it, except for a user's scene, which the tracer cannot read.
 [[nodiscard]] PovRay povray_for(const PlannedRender& planned,
                                 const PlanningOptions& options,
                                 const std::string& folder);
 
-// Settings of POV-Ray's for a scene of the user's own: its clock.
+// POV-Ray settings for a user's scene: its clock.
 [[nodiscard]] std::vector<std::string> scene_ini(const PlanningOptions& options);
 
 [[nodiscard]] RunOptions run_options(const PlanningOptions& options, int jobs);
@@ -48,7 +48,7 @@ struct RenderedFrames {
     double povray_s = 0.0;
 };
 
-// Runs POV-Ray with a line of progress, which is the options' report, and takes the time.
+// Runs POV-Ray with a line of progress, the options' report, and measures the time.
 [[nodiscard]] RenderedFrames render_frames(const PovRay& povray,
                                            const std::filesystem::path& folder,
                                            const SceneSet& scenes,

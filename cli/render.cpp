@@ -123,7 +123,7 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
     return kDone;
 }
 
-// A share takes the scenes as they are: what would plan others has no say.
+// A share takes the scenes as they are: planning options do not apply.
 void refuse_what_plans(const CLI::App& app) {
     constexpr std::string_view kOfShares =
         "RIG,--frames,--jobs,--json,--povray,--stall-timeout,--library-path,--ignore-needs";

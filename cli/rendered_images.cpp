@@ -19,7 +19,7 @@ void require_rendered(const fs::path& folder) {
     for (const char* name : {"image.exr", "spectral.exr"}) {
         if (!is_traced(folder / name)) continue;
         throw InputError(
-            "{}: found an image of the reference tracer; allowed: one of POV-Ray's frames, as "
+            "{}: found an image by the reference tracer; allowed: one from POV-Ray's frames, as "
             "`aphotic integrate {}` makes it",
             (folder / name).string(),
             folder.string());

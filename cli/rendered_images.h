@@ -11,10 +11,10 @@
 
 namespace aphotic::cli {
 
-// Throws InputError when the reference tracer made one of them: it would be held against itself.
+// Throws InputError if the reference tracer made one of them, which would be compared with itself.
 void require_rendered(const std::filesystem::path& folder);
 
-// family: of the plan that was rendered, for what frames shared behind a port may shift.
+// family: of the rendered plan, for the shifts of frames shared behind a port.
 [[nodiscard]] RenderedImages images_in(const std::filesystem::path& folder,
                                        const Rig& rig,
                                        const Manifest& manifest,

@@ -22,7 +22,7 @@ namespace {
 
 std::vector<std::string> set_keys;
 
-// What makes images of a rig: others are given images, whose size these have.
+// Commands that make images of a rig: others are given images, which fix the size.
 constexpr std::array<std::string_view, 8> kScaled{
     "render", "plan", "generate", "trace", "validate", "study", "lightmap", "survey"};
 

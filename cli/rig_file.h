@@ -22,16 +22,16 @@ namespace aphotic::cli {
 
 void add_strict_option(CLI::App& app, bool& strict);
 
-// Once what the options change of the rig is changed.
+// After the options' changes to the rig.
 void check_plausible(const Rig& rig, const std::string& file, bool strict);
 
-// For a command that has an argument or an option for a rig; others are left as they are.
+// For a command with an argument or an option for a rig; others are left as they are.
 void add_set_option(CLI::App& app);
-// What --set said, in its order; none: nothing.
+// The values of --set, in order; empty: none.
 [[nodiscard]] std::optional<ManifestSettings> rig_settings();
 
-// Of the file, with these keys set. Throws InputError as read_rig does (rig/file/rig_reader.h), and
-// one that begins with --set where a key or its value is at fault.
+// The rig of the file, with these keys set. Throws InputError as read_rig does
+// (rig/file/rig_reader.h), prefixed with --set if a key or its value is at fault.
 [[nodiscard]] RigText read_rig_text_as_set(const std::string& file);
 [[nodiscard]] Rig read_rig_as_set(const std::string& file);
 

@@ -44,7 +44,7 @@ struct StudyCommandOptions {
     bool ignore_needs = false;
 };
 
-// A setting and its plan, made before anything is rendered: what cannot be kept is refused at once.
+// A setting and its plan, made before anything is rendered: an impossible one is refused at once.
 struct PlannedSetting {
     StudySetting setting;
     RenderPlan plan;
@@ -110,7 +110,7 @@ void print_study(const Study& study, const fs::path& folder) {
             m.max_error,
             m.max_error_on_edges);
     }
-    say("  * on the Pareto front: no other is as fast and as right\n");
+    say("  * on the Pareto front: no other is both faster and more accurate\n");
     say("  {}/study.html, study.csv, study.json\n", folder.string());
 }
 
@@ -132,7 +132,7 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     Rig rig = read_plausible_rig(options.rig_file, options.strict);
     if (!rig.scene.empty()) {
         throw InputError(
-            "{}: scene: found {}; allowed: none, for a study is of the rig's own floor, which the "
+            "{}: scene: found {}; allowed: none, since a study uses the rig's own floor, which the "
             "reference knows",
             options.rig_file,
             rig.scene.string());

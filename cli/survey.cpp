@@ -82,8 +82,8 @@ void print(const MadeSurvey& made) {
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
-        "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers an electron\n"
-        "  {}, as instruments tell it {}\n",
+        "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers per electron\n"
+        "  {}, and as instruments measure it {}\n",
         survey.rig.title,
         counted(survey.legs.size(), "image"),
         folder,
@@ -113,7 +113,7 @@ fs::path scene_of(const SurveyCommandOptions& options, const Rig& rig) {
     return options.planning.scene.empty() ? rig.scene : fs::path(options.planning.scene);
 }
 
-// What the rig's camera tells, and in its place what the options do.
+// The rig camera's values, replaced by the options'.
 Readout readout_of(const Readout& said, Readout readout) {
     if (!said.bayer.empty()) readout.bayer = said.bayer;
     for (const auto part : {&Readout::black_level_dn,
@@ -182,7 +182,7 @@ TruthAsked truth_asked(const SurveyCommandOptions& options, const Rig& rig) {
         if (is_asked(kind) && !scene_of(options, rig).empty())
             throw InputError(
                 "--truth: found {} of a POV-Ray scene of your own; allowed with one: depth, poses. "
-                "Without its textures POV-Ray tells ranges alone",
+                "Without its textures POV-Ray gives ranges only",
                 kind);
     }
     return {.depth = is_asked("depth"),
@@ -211,7 +211,7 @@ SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
             return electrons_for_share(
                 survey.rig, survey.corners, survey.camera.saturation_e, options.floor_share);
         });
-    // The rig's exposure is what that is for; another is as many times as bright.
+    // The rig's exposure is the reference; another scales the brightness.
     survey.camera.electrons_per_signal *=
         relative_exposure(survey.camera.shot, {.reference = shot_of(survey.rig.camera.readout)});
     const bool by_povray = is_by_povray(options, survey.rig);
@@ -278,7 +278,7 @@ void make_truth_by_povray(const SurveyCommandOptions& options,
                           const PovRay& povray) {
     if (are_there(pictures_of(survey, "truth"))) return;
     PlanningOptions planning = options.planning;
-    // The lowest, level: the brightest, from which the exposure is taken.
+    // The lowest, level pose: the brightest, from which the exposure is derived.
     planning.sled = {.altitude_m =
                          std::ranges::min(survey.corners, {}, &Sled::altitude_m).altitude_m};
     planning.declared = declared_numbers({.number = 1, .sled = *planning.sled}, options.declared);
@@ -298,7 +298,7 @@ void make_truth_by_povray(const SurveyCommandOptions& options,
                     run_with_progress(options, line, "rendering"));
 }
 
-// By POV-Ray, for only it can read the scene.
+// By POV-Ray, since only it can read the scene.
 void write_ranges_of_scene(const SurveyCommandOptions& options,
                            const SimulatedSurvey& survey,
                            const PovRay& povray) {
@@ -314,7 +314,7 @@ void write_ranges_of_scene(const SurveyCommandOptions& options,
                   run_with_progress(options, line, "ranges"));
 }
 
-// By the reference's geometry, which needs neither lamps nor what scatters.
+// By the reference's geometry, without lamps or scattering.
 void write_what_is_seen(const SimulatedSurvey& survey) {
     Rig dark = survey.rig;
     dark.strobes.clear();

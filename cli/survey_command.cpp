@@ -279,7 +279,7 @@ Survey read_survey(const SurveyInput& input, const std::filesystem::path& output
                   .dropouts = input.dropouts};
     if (rig != nullptr) survey.camera = with_rig(survey.camera, rig->camera);
     survey.camera = with_reference(survey.camera, survey.files);
-    // A crop that no image has is one mistake.
+    // A crop that fits no image is one mistake, reported once.
     survey.camera = expecting_usual_size(survey.camera, survey.files);
     return survey;
 }
@@ -301,10 +301,9 @@ std::optional<Navigation> navigation_of(const SurveyInput& input,
     const bool has_depth = !input.depth.place.empty();
     if (!input.navigation.source.empty()) return read_navigation(input, files, &rig);
     if (!has_depth)
-        throw InputError(
-            "--rig needs --nav, for the map depends on where the sled was, or --depth-map");
+        throw InputError("--rig needs --nav, since the map depends on the pose, or --depth-map");
     if (input.depth.normals == NormalsFrom::Floor)
-        throw InputError("--normals floor needs --nav, which says how the floor lies");
+        throw InputError("--normals floor needs --nav, which gives the floor's orientation");
     return std::nullopt;
 }
 
@@ -359,7 +358,7 @@ void print_relief(const Survey& survey) {
 }
 
 std::size_t AllowedSkips::of(std::size_t images) const {
-    // 0.07 of 100 are 7, which their product in doubles misses by its rounding.
+    // 0.07 of 100 is 7, which their product in doubles misses by rounding.
     constexpr double kRounding = 1e-9;
     const double number_of =
         is_share ? number * static_cast<double>(images) * (1.0 + kRounding) : number;
@@ -399,7 +398,7 @@ RunWatch terminal_watch(bool strict) {
 void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder) {
     say("  sRGB in {}: exposure {:.4g}, ", (folder / kSrgbFolder).string(), encoding.exposure);
     if (encoding.camera) {
-        say("colours within {:.1f} CIELAB units in the mean of {}, {:.1f} at most ({})\n",
+        say("colours within {:.1f} CIELAB units on average over {}, {:.1f} at most ({})\n",
             encoding.camera->mean_delta_e(),
             counted(encoding.camera->surfaces.size(), "surface"),
             encoding.camera->worst().delta_e,

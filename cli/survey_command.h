@@ -69,12 +69,12 @@ void add_outcome_options(CLI::App& app, SurveyInput& input);
 using Settle = std::function<void()>;
 [[nodiscard]] Settle add_format_options(CLI::App& app, ResultFormat& format);
 
-// The input's rig, where it is named for its camera alone.
+// The input's rig, if it is named only for its camera.
 [[nodiscard]] std::optional<Rig> rig_of(const SurveyInput& input);
 
-// The images but for those that lie in the output; and the camera as the options say, then as the
-// rig's says, if there is one, then as the files. An InputError where these contradict each other,
-// or have no such crop.
+// The images except those in the output; and the camera from the options, then from the rig, if
+// there is one, then from the files. An InputError if these contradict each other, or have no such
+// crop.
 [[nodiscard]] Survey read_survey(const SurveyInput& input,
                                  const std::filesystem::path& output,
                                  const Rig* rig);
@@ -89,12 +89,12 @@ using Settle = std::function<void()>;
                                          const std::vector<ImageFile>& files,
                                          const Rig* rig);
 
-// A line of progress, a warning of what looks wrong, or when strict an InputError, and each image
-// that is skipped, or that not all strobes lit.
+// A line of progress, a warning of what looks wrong, or when strict an InputError, and each skipped
+// image and each dropout.
 [[nodiscard]] RunWatch terminal_watch(bool strict);
 
-// "camera: RGGB, black level 64, white level 4095", "navigation: ..."; nothing where there is
-// nothing to say.
+// "camera: RGGB, black level 64, white level 4095", "navigation: ..."; nothing if there is nothing
+// to report.
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
 // "relief: depth maps of depth, along the axis"; "relief: reef.ply, east-north-up, by altitudes"
@@ -106,7 +106,7 @@ void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folde
 // "doubtful pixels: dark 0.1 % ..."
 void print_doubts(const RunOutcome& outcome);
 
-// kDone when no more were skipped than is allowed. Skips are said, with both numbers.
+// kDone if no more were skipped than allowed. Skips are reported, with both numbers.
 [[nodiscard]] ExitStatus status_of_skips(std::size_t skipped,
                                          std::size_t images,
                                          const SurveyInput& input);

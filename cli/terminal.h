@@ -13,10 +13,10 @@
 
 namespace aphotic::cli {
 
-// A text of several lines, as it is but for control characters.
+// A text of several lines, unchanged except for control characters.
 void say_text(std::string_view text);
 
-// As fmt::print(), with strings among the values on one line.
+// Like fmt::print(), with strings among the values on one line.
 template <typename... Values>
 void say(fmt::format_string<Values...> text, const Values&... values) {
     say_text(fmt::format(fmt::runtime(text), shown_value(values)...));
@@ -30,7 +30,7 @@ void warn(fmt::format_string<Values...> text, const Values&... values) {
     warn_text(fmt::format(fmt::runtime(text), shown_value(values)...));
 }
 
-// What was said must have arrived: a full disk behind a redirection is a RunError.
+// Output must have arrived: a full disk behind a redirection is a RunError.
 void flush_said();
 
 }  // namespace aphotic::cli

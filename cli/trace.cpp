@@ -30,13 +30,13 @@ struct TraceCommandOptions {
     bool json = false;
 };
 
-// Its images have the same names, and would be held against the reference as if POV-Ray had made
+// Its images have the same names, and would be compared with the reference as if POV-Ray had made
 // them.
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
-        "{}: found the manifest of a render; allowed: a folder without one, as the traced images "
-        "would replace the rendered ones",
+        "{}: found the manifest of a render; allowed: a folder without one, since the traced "
+        "images would replace the rendered ones",
         manifest_path(folder).string());
 }
 

@@ -14,10 +14,10 @@
 
 namespace aphotic::cli {
 
-// ": did you mean ...?", or what lists them all when none is near.
+// ": did you mean ...?", or how to list them all if none is near.
 [[nodiscard]] std::string nearest_command(const CLI::App& app, std::string_view wanted);
 
-// After a parse that failed: a line for each. Empty: all are known.
+// After a failed parse: a line for each. Empty: all are known.
 [[nodiscard]] std::string unknown_words(const CLI::App& app);
 
 }  // namespace aphotic::cli

@@ -60,7 +60,7 @@ void require_promise(const std::string& what, const std::vector<std::string>& no
         fmt::join(no_promise, "; "));
 }
 
-// Of a render that can be held against the rig's reference.
+// For a render that can be compared with the rig's reference.
 Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
     Manifest manifest = read_manifest(folder);
     require_rendered(folder);
@@ -83,7 +83,7 @@ void print_model(const ModelCheck& model) {
         return fmt::format(
             "{:.4f} +- {:.4f}", of_model / truth.mean, truth.standard_error / truth.mean);
     };
-    say("  The reference over light of all orders, {} paths a place:\n", model.paths);
+    say("  The reference over light of all orders, {} paths per place:\n", model.paths);
     say("  {:>3}  {:>6}  {:>14}  {:>6}  {:>18}  {:>18}  {:>18}\n",
         "",
         "nm",
@@ -106,8 +106,7 @@ void print_model(const ModelCheck& model) {
     say("  off by {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n", rms[0], rms[1], rms[2]);
 }
 
-// Of the largest share of pixels that one comparison leaves to its edges, and the largest error
-// there of any.
+// Over the comparisons, the largest share of pixels left to edges, and the largest error there.
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
@@ -175,7 +174,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const UserScene* const scene = planned.plan.scene.user_scene.get();
     require_promise(scene != nullptr ? scene->file.string() : options.planning.rig_file,
                     planned.plan.no_promise);
-    // All that can be refused is refused before there is a folder.
+    // Everything that can be refused is refused before there is a folder.
     PovRay povray;
     int jobs = options.jobs;
     if (is_rendered) {
@@ -217,7 +216,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         ProgressLine line;
         report.model =
             check_model(planned.rig, options.monte_carlo, options.jobs, [&](double share) {
-                line.show("following light of all orders", share);
+                line.show("tracing light of all orders", share);
             });
     }
     if (rendering.manifest.scene) report.scene_file = rendering.manifest.scene->file;

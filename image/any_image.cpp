@@ -12,12 +12,12 @@
 namespace aphotic {
 namespace {
 
-// OpenImageIO cuts a path at its question mark, and takes the rest for options.
+// OpenImageIO cuts a path at its question mark and reads the rest as options.
 void require_plain_path(const std::filesystem::path& file) {
     if (file.string().find('?') == std::string::npos) return;
     throw InputError(
-        "{}: found a question mark in the path; allowed: none, for OpenImageIO takes what follows "
-        "it for options",
+        "{}: found a question mark in the path; allowed: none, since OpenImageIO reads what "
+        "follows it as options",
         file.string());
 }
 

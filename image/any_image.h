@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images in the formats that OpenImageIO reads whole or not at all, those that it writes, and its
+// Images in other formats: OpenImageIO's readers that detect truncated files, its writers, and its
 // filters.
 //
-// OpenImageIO brings some two hundred libraries with it, which take 0.3 s and 100 MB to load: a
-// part of the command by itself, aphotic_any_image.so, loads it when such an image is asked for.
+// OpenImageIO brings some two hundred libraries with it, which take 0.3 s and 100 MB to load, so a
+// separate part of the command, aphotic_any_image.so, loads it on first use.
 #pragma once
 
 #include "image/image_tags.h"
@@ -22,33 +22,32 @@ struct AnyImage {
     int width_px = 0;
     int height_px = 0;
     std::vector<std::string> channels;
-    // The samples of one channel, rows from the top, as stored, integers scaled to 0..1.
+    // The samples of one channel, rows from the top, as stored; integers are scaled to 0..1.
     std::function<std::vector<float>(std::size_t channel)> samples;
-    // All of them, one channel after another, from one pass through the file.
+    // All channels, one after another, in one pass through the file.
     std::function<std::vector<float>()> planes;
-    // What the integer stood for that is 1 here: 255, 4095, 65535. 0 of floats.
+    // The integer that became 1: 255, 4095, 65535. 0 for floats.
     double full_scale = 0.0;
-    std::string description;  // the file's own words; empty when it has none
+    std::string description;  // the file's own description; empty if it has none
     std::string date_time;    // when it was taken, "YYYY:MM:DD hh:mm:ss", or empty
 };
 
-// For messages: no more than the first few by name.
+// For messages: only the first few by name.
 [[nodiscard]] std::string names_of(const std::vector<std::string>& channels);
 
-// An image that cannot be read, is cut short, or is of a format of which that cannot be told, is an
-// InputError, also when its samples are asked for; a program installed without the part, a
-// RunError.
+// An image that cannot be read, is truncated, or has a format in which truncation cannot be
+// detected is an InputError, also when its samples are requested; a program installed without the
+// part is a RunError.
 [[nodiscard]] AnyImage open_any_image(const std::filesystem::path& file);
 
-// What the file says of itself, by the names that OpenImageIO has for it, such as
-// "Exif:DateTimeOriginal". Of the file its header alone is read. An InputError when it has none.
+// The file's metadata by OpenImageIO's names, such as "Exif:DateTimeOriginal". Only the header is
+// read. An InputError if it has none.
 [[nodiscard]] std::map<std::string, std::string> header_of_image(const std::filesystem::path& file);
 
-// Planes as an image, in the format that the file's extension names, whole or not there. Integers
-// are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.
+// Writes planes as an image in the format of the file's extension, complete or not at all. Integers
+// map 0 to 1 to their range, rounded and clipped. A failure to write is a RunError.
 enum class SampleType { Bits8, Bits16 };
-// All of them lossless, but for JPEG: deflate at its fastest level and at the level that most
-// programs take.
+// All lossless except JPEG: deflate at its fastest level, and at most programs' default level.
 enum class Compression { None, Fast, Small };
 struct WrittenImage {
     int width_px = 0;
@@ -58,14 +57,15 @@ struct WrittenImage {
     SampleType type = SampleType::Bits16;
     Compression compression = Compression::Fast;
     std::string description{};
-    std::string date_time{};  // empty: not known. Never now: the same image is the same file
-    SharedTags tags{};        // of the file that it was made of; of TIFF, PNG and JPEG
-    bool is_srgb = false;     // the samples are encoded as sRGB, which the file says
-    int jpeg_quality = 95;    // 1 to 100; colours are kept at every pixel
+    std::string
+        date_time{};    // empty: unknown. Never the current time: the same image is the same file
+    SharedTags tags{};  // the source file's; for TIFF, PNG and JPEG
+    bool is_srgb = false;   // the samples are encoded as sRGB, and the file says so
+    int jpeg_quality = 95;  // 1 to 100; chroma is not subsampled
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 
-// One plane of from_width x from_height samples at another size, the image's edges in place, by one
+// Resizes a plane of from_width x from_height samples, keeping the image's edges in place, with one
 // of OpenImageIO's filters, such as "lanczos3". An unknown filter is an InputError.
 struct PlaneSize {
     int width_px = 0;

@@ -30,7 +30,7 @@
 
 namespace {
 
-// A 12-bit camera's numbers come scaled to the 16 bits that hold them, when the file says so.
+// A 12-bit camera's numbers are scaled to the 16 bits that hold them if the file says so.
 double full_scale_of(const OIIO::ImageSpec& spec) {
     if (spec.format.is_floating_point()) return 0.0;
     const int bits =
@@ -38,7 +38,7 @@ double full_scale_of(const OIIO::ImageSpec& spec) {
     return std::exp2(bits) - 1.0;
 }
 
-// Of pixels with their channels side by side.
+// Pixels with interleaved channels.
 std::vector<float> planes_of(std::vector<float> pixels, std::size_t channels) {
     if (channels == 1) return pixels;
     const std::size_t count = pixels.size() / channels;
@@ -49,7 +49,7 @@ std::vector<float> planes_of(std::vector<float> pixels, std::size_t channels) {
     return planes;
 }
 
-// Halves away from 0, as the library rounds; what is no number is 0.
+// Rounds half away from 0, as the library does; NaN becomes 0.
 template <typename Integer>
 Integer rounded(float sample) {
     constexpr auto kMost = static_cast<float>(std::numeric_limits<Integer>::max());
@@ -61,8 +61,7 @@ Integer rounded(float sample) {
     return static_cast<Integer>(whole + (number - static_cast<float>(whole) >= kHalf ? 1 : 0));
 }
 
-// The channels of a pixel side by side, as the file has them: the library would first make as many
-// floats of them.
+// Channels interleaved as in the file: the library would first allocate as many floats.
 template <typename Integer>
 bool write_as(OIIO::ImageOutput& output, const aphotic::WrittenImage& image) {
     const std::size_t channels = image.channels.size();
@@ -76,7 +75,7 @@ bool write_as(OIIO::ImageOutput& output, const aphotic::WrittenImage& image) {
     return output.write_image(output.spec().format, pixels.data());
 }
 
-// Where the library writes to.
+// Where the library writes.
 class WatchedFile : public OIIO::Filesystem::IOProxy {
   public:
     explicit WatchedFile(const std::filesystem::path& file)
@@ -101,7 +100,7 @@ class WatchedFile : public OIIO::Filesystem::IOProxy {
     }
     [[nodiscard]] std::size_t size() const override { return file_.size(); }
 
-    // What the system said against it, or nothing.
+    // The system's error message, or empty.
     [[nodiscard]] std::string end() {
         file_.close();
         return file_.error();
@@ -122,17 +121,17 @@ void compress(OIIO::ImageSpec& spec, aphotic::Compression compression) {
     spec.attribute("png:compressionLevel", is_packed ? level : 0);
 }
 
-// Formats of which a file that was cut short is known as such: the tests cut each of them.
+// Formats whose truncated files are detected: the tests truncate each of them.
 constexpr std::string_view kFormats =
     "bmp, dpx, fits, hdr, jpeg, jpeg2000, openexr, png, pnm, sgi, targa, tiff, webp";
 
-// The first of several lines names the cause.
+// The first of several lines gives the cause.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reasons) {
     const std::string why = reasons.substr(0, reasons.find('\n'));
     throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
 }
 
-// What read() gives. Whatever the libraries throw is said of the file.
+// The result of read(). Whatever the libraries throw becomes an error about the file.
 template <typename Read>
 auto reading(const std::filesystem::path& file, const Read& read) {
     try {
@@ -144,7 +143,7 @@ auto reading(const std::filesystem::path& file, const Read& read) {
     }
 }
 
-// Before a library looks at them.
+// Checks before any library opens the file.
 void require_sound_header(const std::filesystem::path& file) {
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none)) {
@@ -156,13 +155,13 @@ void require_sound_header(const std::filesystem::path& file) {
     if (aphotic::is_png(file)) aphotic::require_sound_png_header(file);
 }
 
-// What the header of every format tells, once a library has read it.
+// Checks after a library has read the header, in every format.
 void require_sound_spec(const OIIO::ImageSpec& spec, const std::filesystem::path& file) {
     aphotic::require_sides(spec.width, spec.height);
     if (spec.deep || spec.depth > 1) throw aphotic::InputError("found deep pixels or a volume");
     const std::uint64_t samples = spec.image_pixels() * static_cast<std::uint64_t>(spec.nchannels);
     aphotic::require_file_size(std::filesystem::file_size(file), spec.image_bytes(true), samples);
-    // A position on a page is none in an image of which this is a part.
+    // A position on a page is not an offset within a larger image.
     if (spec.full_width == spec.width && spec.full_height == spec.height) return;
     throw aphotic::InputError("found {} x {} of {} x {} pixels; allowed: the whole image",
                               spec.width,
@@ -185,8 +184,8 @@ std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
     return input;
 }
 
-// Of a TIFF whose strips are said to be higher than the image, OpenImageIO 2.4 counts rows and
-// bytes beyond what its integers hold, and never ends.
+// If a TIFF's strips are declared higher than the image, OpenImageIO 2.4 counts rows and bytes past
+// its integers' range and never ends.
 bool is_read_by_rows(const OIIO::ImageSpec& spec, std::string_view format) {
     const int rows = spec.get_int_attribute("tiff:RowsPerStrip", 0);
     return format == "tiff" && spec.tile_width == 0 && (rows <= 0 || rows > spec.height);
@@ -205,8 +204,8 @@ bool read_by_rows(OIIO::ImageInput& input, int first, int end, float* to) {
     return true;
 }
 
-// The channels from `first` up to, and without, `end`. OpenImageIO takes what it can get of a file
-// that is damaged, and leaves an error behind.
+// The channels from `first` up to but not including `end`. OpenImageIO reads what it can from a
+// damaged file and sets an error.
 std::vector<float> pixels_in(OIIO::ImageInput& input,
                              const std::filesystem::path& file,
                              int first,
@@ -231,7 +230,7 @@ std::vector<float> pixels_in(OIIO::ImageInput& input,
 
 extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
                                        aphotic::AnyImage& image) {
-    // Opened directly: an image cache could hand back the pixels of a file that was since replaced.
+    // Opened directly: an image cache could return the pixels of a file that has been replaced.
     const auto input = reading(file, [&] { return opened(file); });
     const OIIO::ImageSpec& spec = input->spec();
     image.width_px = spec.width;
@@ -315,7 +314,7 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
     std::string cause = watched.end();
     if (!cause.empty()) return cause;
     if (is_whole) return "";
-    return fault.empty() ? "the library does not say why" : fault;
+    return fault.empty() ? "the library gives no reason" : fault;
 }
 
 extern "C" void aphotic_write_any_image(const std::filesystem::path& file,

@@ -8,8 +8,8 @@
 namespace aphotic {
 
 void* function_of_part(const char* name) {
-    // Through the program's own run path, else where it was installed; stays loaded, for the images
-    // hold on to it.
+    // Searched along the program's run path, then where it was installed; never unloaded, since the
+    // images refer to it.
     static void* const kPart = [] {
         void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
         return part != nullptr
@@ -17,10 +17,10 @@ void* function_of_part(const char* name) {
                    : ::dlopen(APHOTIC_PARTS "/aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
     }();
     if (kPart == nullptr) {
-        throw RunError("the image reader cannot be loaded: {}", ::dlerror());
+        throw RunError("cannot load the image reader: {}", ::dlerror());
     }
     void* const function = ::dlsym(kPart, name);
-    if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");
+    if (function == nullptr) throw RunError("aphotic_any_image.so is of another version");
     return function;
 }
 

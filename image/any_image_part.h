@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The part of the command that links the libraries for all formats but OpenEXR (any_image.h),
-// loaded when one of its functions is first asked for.
+// The part of the command that links the libraries for all formats except OpenEXR (any_image.h),
+// loaded on first use.
 #pragma once
 
 namespace aphotic {
 
-// A RunError when there is no such part, or none of this version.
+// A RunError if the part is missing or of another version.
 [[nodiscard]] void* function_of_part(const char* name);
 
 template <typename Function>

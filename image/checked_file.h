@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A new file that libraries write into, which remembers what the system said when it would not take
-// their bytes: "No space left on device". Libraries forget that, or say nothing at all.
+// A new file that libraries write to, which keeps the system's error message, such as "No space
+// left on device". Libraries forget it, or report nothing.
 //
-// Header alone, for the part that is loaded at run time has it, too.
+// Header only, because the part loaded at run time uses it too.
 #pragma once
 
 #include <fcntl.h>
@@ -21,7 +21,7 @@ namespace aphotic {
 
 class CheckedFile {
   public:
-    // What fails is found out by error().
+    // error() reports failures.
     explicit CheckedFile(const std::filesystem::path& file)
         : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
         if (descriptor_ < 0) error_ = errno;
@@ -47,7 +47,7 @@ class CheckedFile {
         return error_ == 0;
     }
 
-    // How many bytes were read.
+    // The number of bytes read.
     std::size_t read(void* bytes, std::size_t count, std::int64_t at) {
         std::size_t done = 0;
         while (done < count) {
@@ -72,7 +72,7 @@ class CheckedFile {
         descriptor_ = -1;
     }
 
-    // In the system's words; empty: nothing has failed.
+    // The system's message; empty if nothing has failed.
     [[nodiscard]] std::string error() const {
         return error_ == 0 ? "" : std::generic_category().message(error_);
     }

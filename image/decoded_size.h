@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a file may ask of memory, judged by its header before a pixel is decoded. Sizes in a header
-// cost nothing to write, and decoders take them at their word.
+// How much memory a file may ask for, judged by its header before a pixel is decoded. A header can
+// claim any size, and decoders trust it.
 //
 // A file has up to 32768 pixels each way, two images of the largest size side by side; its tiles,
-// to the last one's edge, have up to 4 times its bytes and 64 MiB; a block that is decoded at once
-// has up to 256 MiB. Beside its pixels a file has up to 256 MiB of notes, thumbnails and further
-// images. And it is no bomb: deflate, the most that images are packed by, makes 1032 bytes of one
-// at the most, so that of an image over 1 GiB, as floats, a file has 1/1100 and more. So a reader
-// takes the memory of the image that the header tells, and less than 1 GiB more; who knows the
-// size that an image should have looks at that first.
+// padded to full tiles, take up to 4 times its bytes plus 64 MiB; a block decoded at once takes up
+// to 256 MiB. Besides pixels a file has up to 256 MiB of metadata, thumbnails and further images.
+// And it is not a decompression bomb: deflate, the strongest compression in use, expands a byte to
+// at most 1032, so the file of an image over 1 GiB, as floats, has at least 1/1100 of that. A
+// reader thus takes the memory of the image that the header declares, and less than 1 GiB more;
+// callers that know the expected size check it first.
 //
-// Messages do not name the file: what reads it does.
+// Messages do not name the file; the caller does.
 #pragma once
 
 #include "base/error.h"
@@ -27,7 +27,7 @@ struct BigSize {
     std::uint64_t height = 0;
 };
 
-// The largest number where it is larger: no file has as many bytes.
+// The largest number if it overflows: no file has as many bytes.
 [[nodiscard]] constexpr std::uint64_t product(std::uint64_t a, std::uint64_t b) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
     return b != 0 && a > kMost / b ? kMost : a * b;
@@ -39,7 +39,7 @@ struct BigSize {
 
 inline constexpr std::uint64_t kMebi = std::uint64_t{1} << 20U;
 
-// Of files whose notes alone are read: libraries hold what these are said to be.
+// For files of which only metadata is read: libraries allocate the declared size.
 inline constexpr std::uint64_t kMostOfNotes_bytes = 512 * kMebi;
 
 inline void require_sides(std::int64_t width, std::int64_t height) {
@@ -54,7 +54,7 @@ inline void require_block(std::uint64_t width, std::uint64_t rows, std::uint64_t
     constexpr std::uint64_t kMost_bytes = 256 * kMebi;
     const std::uint64_t bytes = product(product(width, rows), pixel_bytes);
     if (bytes <= kMost_bytes) return;
-    throw InputError("found {} rows of {} MiB together, decoded at once; allowed: {} MiB",
+    throw InputError("found {} rows decoded at once, {} MiB in all; allowed: {} MiB",
                      rows,
                      bytes / kMebi,
                      kMost_bytes / kMebi);
@@ -77,7 +77,7 @@ inline void require_tiles(BigSize image, BigSize tile, std::uint64_t pixel_bytes
                      image.height);
 }
 
-// image_bytes: of all samples as they are stored, but not compressed.
+// image_bytes: all samples as stored, uncompressed.
 inline void require_file_size(std::uint64_t file_bytes,
                               std::uint64_t image_bytes,
                               std::uint64_t samples) {
@@ -91,7 +91,7 @@ inline void require_file_size(std::uint64_t file_bytes,
                          kMostBeside_bytes / kMebi);
     }
     if (product(samples, sizeof(float)) > kAlways_bytes && image_bytes / kMostTimes > file_bytes) {
-        throw InputError("found {} bytes in the file for {} MiB of pixels; needed: 1/{} and more",
+        throw InputError("found {} bytes in the file for {} MiB of pixels; needed: 1/{} or more",
                          file_bytes,
                          image_bytes / kMebi,
                          kMostTimes);

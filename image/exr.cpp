@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A frame buffer over planar rows, of which the first is first_row of the file.
+// A frame buffer over planar rows that start at first_row of the file.
 Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
                              int width_px,
                              int first_column,
@@ -78,7 +78,7 @@ ExrReader::ExrReader(const fs::path& file) : path_(file) {
     try {
         file_ = std::make_unique<File>(file);
     } catch (const std::exception& error) {
-        fail(path_, "is no readable OpenEXR image", error);
+        fail(path_, "not a readable OpenEXR image", error);
     }
 }
 
@@ -142,7 +142,7 @@ std::vector<float> ExrReader::planes(std::span<const std::string> channels) {
     }
 }
 
-// Where OpenEXR writes to; it takes what is thrown here for its own, but when it closes a file.
+// OpenEXR's output stream; exceptions from here become OpenEXR's own, except when it closes a file.
 class CheckedStream : public Imf::OStream {
   public:
     CheckedStream(const fs::path& file, const fs::path& called)
@@ -168,7 +168,7 @@ class CheckedStream : public Imf::OStream {
 struct ExrWriter::File {
     File(const fs::path& file, const fs::path& called) : stream(file, called) {}
 
-    // What the system said comes before what OpenEXR makes of it.
+    // The system's message comes before OpenEXR's.
     [[noreturn]] void fail(const fs::path& called, const std::exception& why) const {
         const std::string cause = stream.error();
         throw RunError(
@@ -232,8 +232,8 @@ void ExrWriter::write_rows(int rows, std::span<const float> samples) {
 
 void ExrWriter::finish() {
     assert(next_row_ == height_px_);
-    // Closing writes the table of where each block stands, and OpenEXR says nothing when that
-    // fails, as on a full disk.
+    // Closing writes the table of block offsets, and OpenEXR does not report its failure, as on a
+    // full disk.
     file_->out.reset();
     file_->stream.close();
     if (!file_->stream.error().empty()) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OpenEXR images by blocks of rows, so that memory does not grow with their number or height.
+// OpenEXR images in blocks of rows, so that memory does not grow with their number or height.
 //
-// Samples come and go as 32-bit floats, planar: all rows of the first channel named, then all
-// rows of the second. Half floats of a file are widened exactly. Nothing is cached by name: a
-// file that was written again is read again.
+// Samples are 32-bit floats, planar: all rows of the first named channel, then all rows of the
+// second. A file's half floats are widened exactly. Nothing is cached by name: a rewritten file is
+// read again.
 //
-// A file that cannot be opened, read or written, or is gone, is a RunError that names it. So is one
-// whose data window is not its display window (exr_header.h): what is read here is the image, no
-// part of it.
+// A file that is missing or cannot be opened, read or written is a RunError that names it. So is
+// one whose data window differs from its display window (exr_header.h): only whole images are read.
 #pragma once
 
 #include "base/atomic_file.h"
@@ -34,7 +33,7 @@ class ExrReader {
     [[nodiscard]] int height_px() const;
     [[nodiscard]] std::vector<std::string> channels() const;  // in the file's order: sorted
 
-    // A text attribute of the header, empty when there is none of that name.
+    // A text attribute of the header, empty if there is none of that name.
     [[nodiscard]] std::string attribute(const std::string& name) const;
 
     // samples.size() == channels.size() * rows * width_px()
@@ -52,8 +51,8 @@ class ExrReader {
     std::filesystem::path path_;
 };
 
-// What read() makes of the reader of a file that the user named: that it cannot be read is an
-// InputError then.
+// Runs read() on the reader of a file that the user named: a failure to read it is then an
+// InputError.
 template <typename Read>
 auto from_named_exr(const std::filesystem::path& file, const Read& read) {
     try {
@@ -67,14 +66,14 @@ auto from_named_exr(const std::filesystem::path& file, const Read& read) {
 using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 
 // Float samples, ZIP or ZIPS (row_blocks.h). The file appears under its name when finish() has
-// written it whole.
+// written it completely.
 class ExrWriter {
   public:
-    // Of most files the samples carry 11 significant bits, so a quick look finds the zeros; higher
+    // Most files' samples carry 11 significant bits, so the fastest level finds the zeros; higher
     // levels take several times longer for a few per cent.
     static constexpr int kFastestZip = 1;
 
-    // zip_level: 1 to 9, or 0: not compressed.
+    // zip_level: 1 to 9, or 0 for no compression.
     ExrWriter(const std::filesystem::path& file,
               int width_px,
               int height_px,
@@ -101,7 +100,7 @@ class ExrWriter {
     std::unique_ptr<File> file_;
 };
 
-// Threads that compress and decompress, for the whole process. Pixels do not depend on it.
+// Threads for compression and decompression in the whole process. Pixels do not depend on it.
 void set_exr_threads(int threads);
 
 }  // namespace aphotic

@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kDamaged = "its header is damaged";
 
-// Of headers, no attribute of which is as long.
+// An upper limit for headers; no attribute is as long.
 void* moderate_memory(std::size_t bytes) {
     constexpr std::size_t kMost_bytes = std::size_t{64} << 20U;
     return bytes <= kMost_bytes ? std::malloc(bytes) : nullptr;
@@ -34,7 +34,7 @@ void require(exr_result_t result) {
     throw InputError("{}: {}", kDamaged, exr_get_default_error_message(result));
 }
 
-// A file whose headers are read, and nothing printed of it.
+// Reads a file's headers and prints nothing.
 class Headers {
   public:
     explicit Headers(const fs::path& file) {
@@ -93,8 +93,8 @@ std::string words_of(const exr_attr_box2i_t& window) {
         "{} x {} from {}, {}", width_of(window), height_of(window), window.min.x, window.min.y);
 }
 
-// OpenEXR's reader of images takes one byte of this type, which the reader of headers does not
-// know, whatever its size says: what follows would be read from another place.
+// OpenEXR's image reader takes one byte for this type whatever its declared size, but its header
+// reader does not know the type: what follows would be read from the wrong place.
 void require_sizes_of_types(const Headers& headers, int part) {
     const auto count = headers.of<std::int32_t>(part, exr_get_attribute_count);
     for (int i = 0; i < count; ++i) {
@@ -106,10 +106,10 @@ void require_sizes_of_types(const Headers& headers, int part) {
 }
 
 void require_sound(const Headers& headers, int part, std::uint64_t length) {
-    constexpr std::uint64_t kOffset_bytes = 8;  // where a chunk stands, of each
+    constexpr std::uint64_t kOffset_bytes = 8;  // the offset of each chunk
     const auto storage = headers.of<exr_storage_t>(part, exr_get_storage);
     if (storage == EXR_STORAGE_DEEP_SCANLINE || storage == EXR_STORAGE_DEEP_TILED)
-        throw InputError("found deep pixels; allowed: one sample a pixel");
+        throw InputError("found deep pixels; allowed: one sample per pixel");
     require_sizes_of_types(headers, part);
     const auto window = headers.of<exr_attr_box2i_t>(part, exr_get_data_window);
     require_sides(width_of(window), height_of(window));
@@ -133,7 +133,7 @@ void require_sound(const Headers& headers, int part, std::uint64_t length) {
     }
     const auto chunks = headers.of<std::int32_t>(part, exr_get_chunk_count);
     if (static_cast<std::uint64_t>(chunks) * kOffset_bytes > length)
-        throw InputError("it is cut short: found {} bytes for {} chunks", length, chunks);
+        throw InputError("it is truncated: found {} bytes for {} chunks", length, chunks);
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ bool is_exr(const fs::path& file) {
 
 void require_sound_exr_header(const fs::path& file) {
     constexpr int kMostParts = 1000;
-    if (!is_exr(file)) throw InputError("it does not begin as one");
+    if (!is_exr(file)) throw InputError("it does not start with an OpenEXR magic number");
     const Headers headers(file);
     if (headers.parts() > kMostParts) throw InputError("it has more than {} parts", kMostParts);
     for (int part = 0; part < headers.parts(); ++part)
@@ -155,7 +155,7 @@ void require_sound_exr_header(const fs::path& file) {
     const auto data = headers.of<exr_attr_box2i_t>(0, exr_get_data_window);
     const auto display = headers.of<exr_attr_box2i_t>(0, exr_get_display_window);
     if (std::memcmp(&data, &display, sizeof data) == 0) return;
-    throw InputError("its data window, {}, is not its display window, {}; allowed: both alike",
+    throw InputError("its data window, {}, differs from its display window, {}; allowed: equal",
                      words_of(data),
                      words_of(display));
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of OpenEXR files, read by OpenEXRCore and judged before OpenEXR reads the image: that
-// takes the sizes there at their word and asks for gigabytes on a damaged one.
+// Headers of OpenEXR files, read by OpenEXRCore and checked before OpenEXR reads the image: OpenEXR
+// trusts their sizes and requests gigabytes for a damaged file.
 //
-// Accepted: headers that OpenEXRCore finds to be as the standard has them, images of up to
-// kLargestImagePx each way, tiles that hold little more than the image, no deep pixels, and a first
-// part whose data window, the pixels that are there, is its display window, the image. Where the
-// windows differ, the file is a part of its image or has more around it, and pixels would be taken
-// for others; a common origin other than 0, 0 changes nothing.
+// Accepted: headers that OpenEXRCore finds valid, images of up to kLargestImagePx each way, tiles
+// that hold little more than the image, no deep pixels, and a first part whose data window, the
+// pixels present, equals its display window, the image. If the windows differ, the file has only
+// part of its image or more than it, and pixels would be misplaced; a common origin other than 0, 0
+// is fine.
 #pragma once
 
 #include <filesystem>
 
 namespace aphotic {
 
-// By its first bytes.
+// From its first bytes.
 [[nodiscard]] bool is_exr(const std::filesystem::path& file);
 
 // An InputError that does not name the file.

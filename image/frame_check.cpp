@@ -16,7 +16,7 @@ void check_samples(const fs::path& file,
                    std::span<const float> samples,
                    int width_px,
                    int first_row) {
-    // Written so that NaN fails it.
+    // Written so that NaN fails.
     const auto is_good = [](float value) { return value >= 0.0F && value < kLargestHalf; };
     const auto bad = std::find_if_not(samples.begin(), samples.end(), is_good);
     if (bad == samples.end()) return;
@@ -33,7 +33,7 @@ void check_samples(const fs::path& file,
 void check_size(
     const fs::path& file, int found_width_px, int found_height_px, int width_px, int height_px) {
     if (found_width_px == width_px && found_height_px == height_px) return;
-    throw RunError("{}: found {} x {} pixels; wanted {} x {}",
+    throw RunError("{}: found {} x {} pixels; allowed: {} x {}",
                    file.string(),
                    found_width_px,
                    found_height_px,

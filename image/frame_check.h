@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Is a frame what was asked for? Size, channels R, G and B, every sample finite, not negative
-// and below the largest half float; of brighter light POV-Ray's EXR holds inf. What is wrong is
-// a RunError that names the frame and the pixel.
+// Checks that a frame is what was requested: size, channels R, G and B, every sample finite, not
+// negative and below the largest half float; POV-Ray's EXR has inf for brighter light. A RunError
+// names the frame and the pixel.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@
 namespace aphotic {
 
 inline constexpr float kLargestHalf = 65504.0F;
-inline constexpr int kSmallestNormalHalfLog2 = -14;  // below it half floats lose digits
+inline constexpr int kSmallestNormalHalfLog2 = -14;  // half floats lose digits below it
 
-// Samples of whole rows, the first of which is first_row.
+// Samples of whole rows that start at first_row.
 void check_samples(const std::filesystem::path& file,
                    const std::string& channel,
                    std::span<const float> samples,
@@ -27,7 +27,7 @@ void check_size(const std::filesystem::path& file,
                 int width_px,
                 int height_px);
 
-// All of it, reading the file through once.
+// Reads the whole file once.
 void check_frame(const std::filesystem::path& file, int width_px, int height_px);
 
 }  // namespace aphotic

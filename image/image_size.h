@@ -7,10 +7,10 @@
 
 namespace aphotic {
 
-// The most pixels across or along an image, of rigs and of what is made from them.
+// The largest number of pixels across or along an image, for rigs and everything made from them.
 inline constexpr int kLargestImagePx = 16384;
 
-// A number that is not negative, as containers count.
+// A number that is not negative, as a container's size type.
 [[nodiscard]] constexpr std::size_t size_of(int number) {
     return static_cast<std::size_t>(number);
 }

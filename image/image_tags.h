@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a file says of its image: Exif, GPS, IPTC and XMP, carried from one file to another as they
-// are. Left behind is what another file's pixels make untrue: sizes, compression, colour space,
-// thumbnails, a raw file's levels and matrices; and makers' notes, whose insides nobody can move.
+// An image's metadata, Exif, GPS, IPTC and XMP, copied unchanged from one file to another. Omitted
+// is what different pixels make untrue: sizes, compression, colour space, thumbnails, a raw file's
+// levels and matrices; and maker notes, whose offsets cannot be moved.
 //
-// OpenImageIO carries less: 2.4 drops the GPS position of every TIFF and JPEG, the ISO number of a
-// TIFF, and most of XMP. Exiv2 does this.
+// OpenImageIO copies less: 2.4 drops the GPS position of every TIFF and JPEG, the ISO number of a
+// TIFF, and most of XMP. Exiv2 copies all.
 #pragma once
 
 #include <filesystem>
@@ -20,21 +20,20 @@ namespace aphotic {
 struct ImageTags;  // the library's own
 using SharedTags = std::shared_ptr<const ImageTags>;
 
-// None: the file has none that can be read.
+// Null if the file has no readable metadata.
 [[nodiscard]] SharedTags read_image_tags(const std::filesystem::path& file);
 
-// To those of a TIFF, PNG or JPEG, where there are some, and that its samples are encoded as sRGB.
-// A RunError when it cannot be written, of the file as it will be called, where that is another
-// name.
+// Adds these tags, if any, to those of a TIFF, PNG or JPEG, and marks its samples as sRGB. A
+// RunError if it cannot be written, which uses the file's final name if that differs.
 void add_image_tags(const std::filesystem::path& file,
                     const SharedTags& tags,
                     bool is_srgb = false,
                     const std::filesystem::path& called = {});
 
-// As names and words, such as Exif.GPSInfo.GPSLatitude and "41/1 30/1 444442/10000".
+// As names and values, such as Exif.GPSInfo.GPSLatitude and "41/1 30/1 444442/10000".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(const ImageTags& tags);
 
-// How much light the camera took; what is told by numbers over 0.
+// The camera's exposure; known values are above 0.
 struct ShotExposure {
     std::optional<double> time_s{};
     std::optional<double> iso{};

@@ -27,7 +27,7 @@ struct ImageTags {
     Exiv2::XmpData xmp;
     ShotExposure exposure;
 
-    // But for the words and the time that any image has (any_image.h).
+    // Except the description and time that any image has (any_image.h).
     [[nodiscard]] bool is_empty() const {
         const auto is_of_any = [](const Exiv2::Exifdatum& datum) {
             return datum.key() == "Exif.Image.ImageDescription" ||
@@ -39,7 +39,7 @@ struct ImageTags {
 
 namespace {
 
-// Adobe's part of the library is not for several threads.
+// Adobe's part of the library is not thread-safe.
 void lock_or_unlock(void* mutex, bool lock) {
     auto& known = *static_cast<std::recursive_mutex*>(mutex);
     if (lock) {
@@ -58,8 +58,8 @@ void make_ready() {
     static_cast<void>(kIsReady);
 }
 
-// Of a file's first directory, what tells of the camera and of the picture; all else tells of the
-// pixels.
+// The tags of a file's first directory that describe the camera and the picture; all others
+// describe the pixels.
 const std::set<std::uint16_t> kOfThePicture{
     0x010e,  // ImageDescription
     0x010f,  // Make
@@ -116,7 +116,7 @@ std::optional<double> number_of(const Exiv2::ExifData& exif, FindExif find) {
     return number;
 }
 
-// Larger numbers do not fit into Exif's own, which then says this.
+// Larger numbers do not fit into Exif's own tag, which then has this value.
 constexpr double kTooLargeIso = 65535.0;
 
 ShotExposure exposure_in(const Exiv2::ExifData& exif) {
@@ -179,11 +179,12 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
         read->exposure = exposure_in(image->exifData());
         if (!read->is_empty()) tags = std::move(read);
     } catch (const std::exception&) {
-        // No format that it knows, or damaged tags: the pixels are as good without.
+        // An unknown format, or damaged tags: the pixels are usable without them.
     }
 }
 
-// Why it could not be written, or nothing. In memory, for Exiv2 does not say that a disk was full.
+// The reason why it could not be written, or empty. In memory, since Exiv2 does not report a full
+// disk.
 static std::string tagged(const std::filesystem::path& file,
                           const aphotic::ImageTags* tags,
                           bool is_srgb) {
@@ -198,7 +199,7 @@ static std::string tagged(const std::filesystem::path& file,
         if (is_srgb) image->exifData()["Exif.Photo.ColorSpace"] = std::uint16_t{1};
         image->writeMetadata();
         Exiv2::BasicIo& made = image->io();
-        if (made.open() != 0) return "there are no bytes";
+        if (made.open() != 0) return "no data";
         CheckedFile out(file);
         out.write(made.mmap(), made.size(), 0);
         out.close();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The images that a render and a trace both leave in their folder, written block by block:
+// The images that both a render and a trace write to their folder, block by block:
 //
 //   image.exr     the camera's signal: float R, G, B
 //   spectral.exr  one float channel a wavelength, R, G, B beside; none without wavelengths
@@ -25,7 +25,7 @@ namespace aphotic {
 // The signals of an image.exr or a spectral.exr.
 [[nodiscard]] CameraImage read_signals(const std::filesystem::path& file);
 
-// The channel of a wavelength in spectral.exr, such as S0.550,000000nm.
+// A wavelength's channel name in spectral.exr, such as S0.550,000000nm.
 [[nodiscard]] std::string spectral_channel(double lambda_nm);
 
 class OutputImages {
@@ -36,11 +36,11 @@ class OutputImages {
                  std::span<const double> lambda_nm,
                  const ExrAttributes& attributes);
 
-    // The next rows: planes R, G, B, then one a wavelength. Returns at once; compression goes on
-    // beside whatever comes next.
+    // The next rows: planes R, G, B, then one per wavelength. Returns at once; compression runs in
+    // parallel with the caller.
     void write_rows(int rows, std::vector<float> samples);
 
-    // Both files stand under their names. Returns the camera's signal.
+    // Renames both files into place. Returns the camera's signal.
     [[nodiscard]] CameraImage finish();
 
   private:
@@ -48,7 +48,7 @@ class OutputImages {
     int next_row_ = 0;
     ExrWriter image_file_;
     std::optional<ExrWriter> spectral_file_;
-    std::future<void> writing_;  // last: its end is awaited before the files go
+    std::future<void> writing_;  // last: it is joined before the files go
 };
 
 }  // namespace aphotic

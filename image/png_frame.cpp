@@ -31,11 +31,11 @@ void exr_of_png_frame(const fs::path& file, White white) {
     const AnyImage png = open_png(png_file);
     const std::vector<float> samples = png.planes();
     if (png.channels != std::vector<std::string>{"R", "G", "B"})
-        throw RunError("{}: found other channels than R, G and B", png_file.string());
+        throw RunError("{}: found channels other than R, G and B", png_file.string());
     if (white == White::IsClipped && std::ranges::max(samples) >= 1.0F) {
         throw RunError(
-            "a pixel is brighter than a 16-bit PNG holds; allowed: --frame-format exr, which holds "
-            "highlights");
+            "a pixel is brighter than a 16-bit PNG can hold; allowed: --frame-format exr, which "
+            "keeps highlights");
     }
     ExrWriter exr(file, png.width_px, png.height_px, png.channels, {});
     exr.write_rows(png.height_px, samples);

@@ -26,8 +26,8 @@ namespace {
     png_longjmp(png, 1);
 }
 
-// Of what a chunk of notes unpacks to libpng keeps no more than that, and reads the file without
-// it: other readers have other limits.
+// libpng drops a metadata chunk that unpacks to more than this, and reads the file without it:
+// other readers have other limits.
 void pass_over(png_structp png, png_const_charp warning) {
     for (const char* limit : {"chunk cache", "insufficient memory", "too large"}) {
         if (std::strstr(warning, limit) != nullptr) leave(png, warning);
@@ -43,7 +43,7 @@ struct Library {
     Library(const Library&) = delete;
     Library& operator=(const Library&) = delete;
 
-    // libpng leaves by a jump, over no destructor: work holds nothing.
+    // libpng exits by longjmp, which skips destructors, so work owns nothing.
     template <typename Work>
     void guarded(const Work& work) {
         if (setjmp(png_jmpbuf(png)) != 0) throw InputError("{}", fault);
@@ -82,8 +82,8 @@ class PngReader {
     [[nodiscard]] int channels() const { return png_get_channels(lib_.png, lib_.info); }
     [[nodiscard]] bool has_16_bits() const { return png_get_bit_depth(lib_.png, lib_.info) == 16; }
 
-    // use(row, its bytes), from the top. An interlaced image is all held, for its rows come by
-    // turns.
+    // Calls use(row, its bytes) from the top. An interlaced image is held completely, since its
+    // rows arrive in passes.
     template <typename Use>
     void rows(const Use& use) {
         const std::size_t row_bytes = png_get_rowbytes(lib_.png, lib_.info);
@@ -137,7 +137,7 @@ std::vector<float> png_pixels(const std::filesystem::path& file, const PngPart& 
     PngReader png(file);
     if (std::cmp_not_equal(png.width(), part.width_px) ||
         std::cmp_not_equal(png.height(), part.height_px) || png.channels() != part.channels) {
-        throw InputError("it was changed while it was read");
+        throw InputError("it changed while being read");
     }
     const std::size_t row_samples = size_of(part.width_px) * size_of(part.end - part.first);
     std::vector<float> pixels(row_samples * size_of(part.height_px));

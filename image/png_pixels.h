@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PNG files, decoded by libpng itself: through OpenImageIO, libpng prints every error on its own
-// line of stderr, and takes a height of a million rows from a header.
+// PNG files, decoded by libpng directly: through OpenImageIO, libpng prints every error as a line
+// on stderr, and trusts a header's height of a million rows.
 //
-// Palettes become colours, transparency a channel, and samples of fewer than 8 bits ones of 8.
-// Every chunk has a checksum, which libpng looks at; one that is wrong is an error where pixels
-// depend on it.
+// Palettes are expanded to colours, transparency to a channel, and samples of fewer than 8 bits to
+// 8. libpng checks every chunk's checksum; a wrong one is an error if pixels depend on it.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +12,14 @@
 
 namespace aphotic {
 
-// By its first bytes.
+// From its first bytes.
 [[nodiscard]] bool is_png(const std::filesystem::path& file);
 
-// An InputError that does not name the file: libpng's words.
+// An InputError without the file's name: libpng's message.
 void require_sound_png_header(const std::filesystem::path& file);
 
-// Of a file of so many pixels and channels, those channels from `first` up to, and without, `end`.
+// For a file of this many pixels and channels: the channels from `first` up to but not including
+// `end`.
 struct PngPart {
     int width_px = 0;
     int height_px = 0;
@@ -28,8 +28,7 @@ struct PngPart {
     int end = 0;
 };
 
-// Row by row, channels side by side, 0 to 1. An InputError as above, also when the file is another
-// by now.
+// Row by row, channels interleaved, 0 to 1. An InputError as above, also if the file has changed.
 [[nodiscard]] std::vector<float> png_pixels(const std::filesystem::path& file, const PngPart& part);
 
 }  // namespace aphotic

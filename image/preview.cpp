@@ -33,13 +33,13 @@ Channels white_of(const CameraImage& image, const Channels& lamp_signal, Preview
     if (white == PreviewWhite::Image) {
         for (std::size_t c = 0; c < kChannels; ++c) result[c] = mean(plane(image, c));
     }
-    // A dead channel has no white of its own.
+    // A channel without signal has no white.
     for (double& value : result) value = value > 0.0 ? value : 1.0;
     return result;
 }
 
-// The quantile over all channels of what scale makes of the samples; a spread-out subset of a
-// few hundred thousand samples tells it well enough.
+// The quantile, over all channels, of the scaled samples; a subset of a few hundred thousand
+// samples, evenly spread, is enough.
 double bright_value(const CameraImage& image, const Channels& scale) {
     constexpr std::size_t kSubset = 200'000;
     const std::size_t step = std::max<std::size_t>(1, image.samples.size() / kSubset) | 1U;
@@ -55,13 +55,13 @@ double bright_value(const CameraImage& image, const Channels& scale) {
         static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
     const double bright = values[static_cast<std::size_t>(rank)];
-    // A small light in the dark: the brightest there is.
+    // A small light in the dark: use the brightest.
     return bright > 0.0 ? bright : *std::ranges::max_element(values);
 }
 
 void require(cairo_status_t status, int width_px, int height_px) {
     if (status == CAIRO_STATUS_SUCCESS) return;
-    throw RunError("no picture of {} x {} pixels can be made: {}",
+    throw RunError("cannot make a picture of {} x {} pixels: {}",
                    width_px,
                    height_px,
                    cairo_status_to_string(status));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A picture for people: the camera's signal, white-balanced, exposed and encoded as sRGB PNG.
+// A picture for viewing: the camera's signal, white-balanced, exposed and encoded as sRGB PNG.
 //
 //   shown_c = sRGB( 2^stops * gain * S_c / W_c )
 //
@@ -10,8 +10,8 @@
 // sRGB   encoding of IEC 61966-2-1: 12.92 x up to 0.0031308, else 1.055 x^(1/2.4) - 0.055;
 //        clipped to 0..1, then rounded to 8 bits
 //
-// It is to look at, not to measure: camera channels are shown as if they were sRGB's own
-// primaries. A white surface in clear water is shown grey. A black image stays black.
+// For viewing, not for measuring: camera channels are shown as if they were sRGB's own primaries. A
+// white surface in clear water is shown grey. A black image stays black.
 #pragma once
 
 #include "image/camera_image.h"
@@ -37,8 +37,8 @@ struct PreviewOptions {
 // sRGB's transfer function, from linear 0..1 to encoded 0..1; clips outside.
 [[nodiscard]] double srgb_encoded(double linear);
 
-// What the samples of each channel are multiplied by before encoding: 2^stops gain / W_c.
-// Samples that are not finite have no say in it. lamp_signal: Manifest::lamp_signal.
+// The factor for each channel's samples before encoding: 2^stops gain / W_c. Samples that are not
+// finite are ignored. lamp_signal: Manifest::lamp_signal.
 [[nodiscard]] std::array<double, kChannels> preview_scale(
     const CameraImage& image,
     const std::array<double, kChannels>& lamp_signal,

@@ -26,14 +26,14 @@ using aphotic::size_of;
 }
 
 [[noreturn]] void refuse_samples(const std::filesystem::path& file) {
-    refuse_raw(file, "found samples of another kind than whole numbers");
+    refuse_raw(file, "found samples that are not whole numbers");
 }
 
 void require_success(int status, const std::filesystem::path& file) {
     if (status != LIBRAW_SUCCESS) refuse_raw(file, LibRaw::strerror(status));
 }
 
-// A mosaic of two by two; LibRaw's numbers below a thousand stand for other ones.
+// A two by two mosaic; LibRaw's numbers below a thousand mean other patterns.
 bool is_bayer(const LibRaw& raw) {
     constexpr unsigned kOthers = 1000;
     return raw.imgdata.idata.filters >= kOthers;
@@ -53,10 +53,10 @@ std::string pattern_of(LibRaw& raw, const std::filesystem::path& file) {
     }
     static const std::array<std::string, 4> kPatterns{"RGGB", "BGGR", "GRBG", "GBRG"};
     if (std::ranges::find(kPatterns, pattern) != kPatterns.end()) return pattern;
-    refuse_raw(file, fmt::format("found a mosaic of other sites; allowed: RGGB, BGGR, GRBG, GBRG"));
+    refuse_raw(file, fmt::format("found another mosaic pattern; allowed: RGGB, BGGR, GRBG, GBRG"));
 }
 
-// Of every site of a mosaic, or of every channel: common, by colour, and by place in a pattern.
+// For every site of a mosaic, or every channel: the common level, the colour's, and the pattern's.
 double black_at(LibRaw& raw, int row, int column, int colour) {
     const auto& levels = raw.imgdata.color;
     const unsigned rows = levels.cblack[4];
@@ -69,7 +69,7 @@ double black_at(LibRaw& raw, int row, int column, int colour) {
     return black;
 }
 
-// Blacks of the sites at the top left, after which they repeat.
+// Black levels of the sites at the top left, which then repeat.
 struct BlackPattern {
     int rows = 2;
     int columns = 2;
@@ -94,7 +94,7 @@ BlackPattern blacks_of(LibRaw& raw) {
     return pattern;
 }
 
-// Of one plane, or of R, G and B side by side.
+// One plane, or interleaved R, G and B.
 std::vector<double> all_blacks(LibRaw& raw, const std::string& pattern) {
     if (pattern != "none") return blacks_of(raw).blacks;
     return {black_at(raw, 0, 0, 0), black_at(raw, 0, 0, 1), black_at(raw, 0, 0, 2)};
@@ -139,8 +139,7 @@ std::vector<float> colours_of(LibRaw& raw, double black) {
     return planes;
 }
 
-// Of samples as unpack() holds them, four of 16 bits for a pixel at the most, and of what it may
-// take beside them.
+// Memory of the samples that unpack() holds, at most four of 16 bits per pixel, and of its buffers.
 void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
     constexpr std::uint64_t kMostPixel_bytes = 8;
     constexpr std::uint64_t kBeside_mebi = 256;
@@ -164,7 +163,7 @@ void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
 
 extern "C" void aphotic_open_raw_file(const std::filesystem::path& file, aphotic::RawFile& opened) {
     const auto raw = std::make_shared<LibRaw>();
-    raw->set_dataerror_handler(nullptr, nullptr);  // it would print what is thrown as well
+    raw->set_dataerror_handler(nullptr, nullptr);  // it would also print what is thrown
     require_success(raw->open_file(file.c_str()), file);
     require_sound_sizes(*raw, file);
     const auto& sizes = raw->imgdata.sizes;

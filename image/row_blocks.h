@@ -17,9 +17,9 @@ inline constexpr int kMostRows = 64;
     return static_cast<int>(std::min<std::size_t>(samples / row, kMostRows));
 }
 
-// Rows that OpenEXR compresses together: 16 by its ZIP, one by its ZIPS. Deflate looks back 32 KiB,
-// and OpenEXR parts the bytes of floats into two halves, each after the other. So beyond 64 KiB a
-// row has nothing of the row before in view: together they come out no smaller, and hold 16 times
+// Rows that OpenEXR compresses together: 16 with ZIP, one with ZIPS. Deflate looks back 32 KiB, and
+// OpenEXR splits the bytes of floats into two halves, one after the other. Beyond 64 KiB a row
+// therefore cannot see the row before: compressing rows together saves nothing and takes 16 times
 // the memory.
 inline constexpr int kRowsOfZip = 16;
 
@@ -29,9 +29,9 @@ inline constexpr int kRowsOfZip = 16;
     return row_bytes > kLongRow_bytes ? 1 : kRowsOfZip;
 }
 
-// Rows that are traced at a time: radiance as doubles, as floats, and as floats on their way to the
-// file take 16 MiB together, or a row for each thread where those are more. As many for each
-// thread, so that all are busy to the end of the block.
+// Rows traced at a time: radiance as doubles, as floats, and as floats queued for the file take 16
+// MiB together, or one row per thread if that is more. The number is a multiple of the threads, so
+// that all are busy to the end of the block.
 [[nodiscard]] inline int traced_rows(int width_px, std::size_t planes, int threads) {
     constexpr std::size_t kTracedSamples = std::size_t{1} << 20U;
     const int rows = rows_holding(kTracedSamples, width_px, planes);

@@ -12,7 +12,7 @@ namespace aphotic {
 inline constexpr const char* kRendererAttribute = "aphotic:renderer";
 inline constexpr const char* kReferenceTracer = "reference tracer";
 
-// False where there is no such file, or none that can be read: that is for others to complain of.
+// False if there is no such file or it cannot be read: reporting that is up to others.
 [[nodiscard]] bool is_traced(const std::filesystem::path& image);
 
 }  // namespace aphotic

@@ -30,7 +30,7 @@ class Directory {
         require_no_error();
     }
 
-    // A number of one value, or what libtiff takes where there is none.
+    // A single-valued tag, or libtiff's default.
     template <typename Value>
     [[nodiscard]] std::uint64_t number(std::uint32_t tag) const {
         Value value{};
@@ -40,18 +40,18 @@ class Directory {
     [[nodiscard]] std::uint64_t size() const { return size_; }
     [[nodiscard]] bool is_tiled() const { return ::TIFFIsTiled(tiff_.get()) != 0; }
 
-    // Of strips or tiles.
+    // Strips or tiles.
     [[nodiscard]] std::uint32_t parts() const {
         return is_tiled() ? ::TIFFNumberOfTiles(tiff_.get()) : ::TIFFNumberOfStrips(tiff_.get());
     }
     [[nodiscard]] std::uint64_t offset(std::uint32_t part) const {
         return ::TIFFGetStrileOffset(tiff_.get(), part);
     }
-    // 0: none is told.
+    // 0 if absent.
     [[nodiscard]] std::uint64_t bytes(std::uint32_t part) const {
         return ::TIFFGetStrileByteCount(tiff_.get(), part);
     }
-    // Of the largest, once it is unpacked.
+    // The largest, unpacked.
     [[nodiscard]] std::uint64_t unpacked_bytes() const {
         return is_tiled() ? ::TIFFTileSize64(tiff_.get()) : ::TIFFStripSize64(tiff_.get());
     }
@@ -59,7 +59,7 @@ class Directory {
     void require_no_error() const {
         if (tiff_ && said_.error.empty()) return;
         const std::string why = said_.error.empty() ? "it has no directory" : said_.error;
-        throw InputError("it is not whole: {}", why);
+        throw InputError("it is incomplete: {}", why);
     }
     [[nodiscard]] bool has_false_counts() const { return said_.has_false_counts; }
 
@@ -93,7 +93,7 @@ void require_sound_sizes(const Directory& tiff) {
                   quotient_up(is_separate ? bits : samples * bits, kByte));
 }
 
-// Frees what zlib holds.
+// Frees zlib's buffers.
 class Inflater {
   public:
     Inflater() {
@@ -108,7 +108,7 @@ class Inflater {
         is_at_end_ = false;
     }
 
-    // Whether the stream has its end and its checksum among these bytes or before them.
+    // Whether the stream's end and checksum are within these bytes or those before them.
     bool take(std::span<std::uint8_t> bytes, std::uint64_t most_bytes) {
         stream_.next_in = bytes.data();
         stream_.avail_in = static_cast<uInt>(bytes.size());
@@ -152,19 +152,18 @@ void require_whole_tiff(const std::filesystem::path& file) {
         const std::uint64_t bytes = tiff.bytes(i);
         tiff.require_no_error();
         if (offset == 0 || bytes == 0) {
-            throw InputError("it is not whole: strip or tile {} of {} is empty", i + 1, parts);
+            throw InputError("it is incomplete: strip or tile {} of {} is empty", i + 1, parts);
         }
         if (bytes <= tiff.size() && offset <= tiff.size() - bytes) continue;
         const std::uint64_t end = offset + bytes;
-        if (end < offset) throw InputError("it points beyond its end");
-        throw InputError("it is cut short: found {} bytes of {} and more", tiff.size(), end);
+        if (end < offset) throw InputError("it points past its end");
+        throw InputError("it is truncated: found {} bytes of at least {}", tiff.size(), end);
     }
-    if (tiff.has_false_counts())
-        throw InputError("it is not whole: the bytes of its strip are missing or too few");
+    if (tiff.has_false_counts()) throw InputError("it is incomplete: its strip has too few bytes");
 }
 
 void require_sound_streams(const std::filesystem::path& file) {
-    // Streams of zlib's: Adobe's deflate, the same by its old number, and Pixar's logarithms in it.
+    // zlib streams: Adobe's deflate, its old number, and Pixar's log encoding.
     constexpr std::array<std::uint64_t, 3> kDeflated{
         COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_PIXARLOG};
     constexpr std::uint64_t kMostTimes = 2;  // Pixar's samples have 16 bits, whatever the image's

@@ -17,10 +17,10 @@
 
 namespace aphotic {
 
-// An InputError that does not name the file, when it is not whole.
+// An InputError without the file's name if it is incomplete.
 void require_whole_tiff(const std::filesystem::path& file);
 
-// The same, of a whole one, when a deflated strip or tile is damaged. Takes the time of unpacking.
+// The same for a complete file if a deflated strip or tile is damaged. Takes the time of unpacking.
 void require_sound_streams(const std::filesystem::path& file);
 
 }  // namespace aphotic

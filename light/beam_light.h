@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A strobe's beam, made ready to be asked for many directions: a round one by its profile
-// (rig/beam/round_profile.h), a table over two angles by its cells (rig/beam/table_cells.h), others
-// by rig/beam/beam.h's formulas; what a window does to those is a profile, too.
+// A strobe's beam, prepared for many directions: a round one as its profile
+// (rig/beam/round_profile.h), a table over two angles as its cells (rig/beam/table_cells.h), others
+// by rig/beam/beam.h's formulas, with the window's effect as a profile too.
 //
 //   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
 //
@@ -29,27 +29,27 @@ class BeamLight {
     BeamLight(const Beam& beam, const Eigen::Vector3d& axis);
 
     [[nodiscard]] double at(const Eigen::Vector3d& towards) const;
-    // Of directions of these lengths.
+    // For directions of these lengths.
     [[nodiscard]] Lanes at(const LaneVector& towards, const Lanes& length) const;
-    // As though what lights the direction `from` had no edge (continued_intensity()).
+    // As if the edge that lights the direction `from` were not there (continued_intensity()).
     [[nodiscard]] double continued(const Eigen::Vector3d& towards,
                                    const Eigen::Vector3d& from) const;
 
   private:
-    // Without what a window lets through.
+    // Without the window's transmission.
     [[nodiscard]] Lanes of_pattern(const LaneVector& towards, const Lanes& length) const;
 
     Beam beam_;
     BeamFrame frame_;
     std::optional<RoundProfile> profile_;  // of a beam that is round
-    // Of others, whose frame is turned as the pattern is.
+    // For others, whose frame is rotated like the pattern.
     BeamFrame pattern_frame_;
     Beam in_air_;
     std::optional<RoundProfile> window_factor_;
     std::optional<TableCells> cells_;
 };
 
-// Where a strobe's beam ends sharply: circles about its axis, and a rim that is none
+// Where a strobe's beam ends sharply: circles about its axis, and a rim that is not a circle
 // (rig/beam/beam.h). A strobe without power has no edge.
 class BeamEdges {
   public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a lamp does to the place of the floor that a ray shows, without wavelength: the one place
-// where this is written, but for the reference.
+// A lamp's effect on the floor point that a ray shows, without wavelength: the only implementation,
+// apart from the reference's.
 //
 //   S = Phi (rho diffuse + highlight) exp(-K path)
 //
@@ -9,12 +9,12 @@
 //   highlight = share I phong max(0, m.l)^size / d^2     I       the beam's intensity
 //   path      = d + r
 //
-// With V, D, w and H of the ray (floor_ray.h), h the lamp's height over the floor, m the ray
-// mirrored at the floor and l the way to the lamp,
+// With V, D, w and H of the ray (floor_ray.h), h the lamp's height above the floor, m the ray
+// mirrored at the floor and l the direction to the lamp,
 //
 //   d = |V|/w     r = H/w     cos(i) / d^2 = h w^3 / |V|^3     m.l = (2 w^2 h - D.V) / |V|
 //
-// Right over the floor at a metre, a lamp of share 1 and I = 1 gives diffuse = 1.
+// Straight above the floor at a metre, a lamp of share 1 and I = 1 gives diffuse = 1.
 #pragma once
 
 #include "light/floor_ray.h"
@@ -27,7 +27,7 @@
 
 namespace aphotic {
 
-// Of an even light, of a lamp at the height h, at the length |V|.
+// For uniform light, from a lamp at height h, at the length |V|.
 template <typename T>
 struct Arriving {
     T per_area;  // cos(i) / d^2  [1/m^2]
@@ -43,7 +43,7 @@ template <typename T, typename Height>
             .path_m = (height_m + length) / down};
 }
 
-// What a highlight has in place of cos(i). along: D.V
+// The highlight's counterpart of cos(i). along: D.V
 [[nodiscard]] inline double highlight_per_area(
     const Seafloor& floor, double lamp_height_m, double down, double along, double length) {
     const double aligned = (2.0 * down * down * lamp_height_m - along) / length;
@@ -58,7 +58,7 @@ struct FloorArrival {
     double path_m = 0.0;
 };
 
-// intensity(V): I. Nothing of a ray that sees no floor, and no path where there is no light.
+// intensity(V): I. Nothing for a ray that sees no floor, and no path where there is no light.
 template <typename Intensity>
 [[nodiscard]] FloorArrival arrival(const Seafloor& floor,
                                    const Eigen::Vector3d& lamp_m,
@@ -82,8 +82,8 @@ template <typename Intensity>
     return light;
 }
 
-// Of a strobe as a point, whose beam has no edge between this ray and a place that it lights for
-// sure; none where the ray sees no floor, and no light of a lamp that is not over it.
+// For a strobe as a point, whose beam has no edge between this ray and a place that it certainly
+// lights; nothing if the ray sees no floor, and no light from a lamp that is not above it.
 [[nodiscard]] std::optional<FloorArrival> arrival_of(const Rig& rig,
                                                      const Strobe& strobe,
                                                      const WaterRay& ray,

@@ -9,7 +9,7 @@
 namespace aphotic {
 namespace {
 
-// A lamp and a crease of it that comes into a tile; none: its light is too steep for the tile.
+// A lamp and one of its creases that enters a tile; no crease: its light is too steep for the tile.
 struct LampCrease {
     const FloorLamp* lamp = nullptr;
     const Crease* crease = nullptr;
@@ -21,7 +21,7 @@ bool is_in_doubt(const PlaceLight& light, const Signals& signals) {
     return is;
 }
 
-// As tile_image.h asks for it.
+// The class that tile_image.h requires.
 class FloorTiles : public TileLight {
   public:
     using Piece = LampCrease;
@@ -66,7 +66,7 @@ class FloorTiles : public TileLight {
     static bool is_right(const PlaceLight& light, const TileCheck& check) {
         if (is_in_doubt(light, light.signals)) return false;
         for (std::size_t c = 0; c < kChannels; ++c) {
-            if (!(std::abs(check.told[c] - light.signals[c]) <=
+            if (!(std::abs(check.interpolated[c] - light.signals[c]) <=
                   kTileError / 3.0 * light.signals[c]))
                 return false;
         }
@@ -97,7 +97,7 @@ class FloorTiles : public TileLight {
     Outside outside_;
 };
 
-// The same of a camera without a port, by lanes.
+// The same for a camera without a port, in lanes.
 class FloorLanes : public FloorTiles {
   public:
     static constexpr std::size_t kLanes = aphotic::kLanes;

@@ -3,10 +3,10 @@
 // The floor's light (floor_light.h) at every pixel of an image, by tiles (tile_image.h) of
 // kFloorTile_px.
 //
-// Where no crease of a lamp's beam (beam_crease.h) comes within a tile (tile_cone.h), the lamp's
-// light is smooth there, and right by a polynomial to kTileError of the lamps' signal. Lamps of
-// which a crease comes near, or whose light is too steep, go on to smaller tiles. So the light of
-// every beam, lens and port costs what its smoothness asks.
+// Where no crease of a lamp's beam (beam_crease.h) enters a tile (tile_cone.h), the lamp's light is
+// smooth there, and a polynomial is accurate to kTileError of the lamps' signal. Lamps near one of
+// their creases, or whose light is too steep, go on to smaller tiles. The cost thus depends on how
+// smooth the light of the beam, lens and port is.
 #pragma once
 
 #include "light/floor_light.h"
@@ -14,7 +14,7 @@
 
 namespace aphotic {
 
-// Of the signal: a third of it at the places where it is checked.
+// Relative to the signal: a third of it at the places where it is checked.
 inline constexpr double kTileError = 1e-6;
 inline constexpr int kFloorTile_px = 64;
 

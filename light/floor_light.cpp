@@ -15,21 +15,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The index nodes of light in the order of PlaceRays, and of the nodes of twice as many; then what
-// each of the first counts at the last two.
+// The index nodes of light in the order of PlaceRays, and those of twice as many; then the weights
+// of the first at the last two.
 constexpr std::array<std::size_t, kIndexNodes> kNodeOrder{1, 0, 2};
 constexpr std::array<std::size_t, kLooks> kLookOrder{2, 0, 4, 1, 3};
 constexpr std::array<std::array<double, kIndexNodes>, kLooks - kIndexNodes> kHalfWay{
     {{0.75, 0.375, -0.125}, {0.75, -0.125, 0.375}}};
 
-// As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
+// As in clear water: of the light that matters to a signal, little is attenuated so much that it
+// needs more.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
-    constexpr double kMostLamps = 1e5;  // a map adds up the lamps pixel by pixel
+    constexpr double kMostLamps = 1e5;  // a map adds up the lamps at each pixel
     const LampGrid grid = lamp_grid(rig, strobe, 0.0);
     if (static_cast<double>(grid.across) * grid.along > kMostLamps) {
         throw InputError(
-            "strobe '{}': found an emitter that takes {} x {} lamps so low over the "
-            "floor; allowed: up to {} of them",
+            "strobe '{}': found an emitter that needs {} x {} lamps this close to the floor; "
+            "allowed: up to {}",
             strobe.name,
             grid.across,
             grid.along,
@@ -38,7 +39,7 @@ LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     return grid;
 }
 
-// add_signal() of lanes whose places lie in one step of the table.
+// add_signal() for lanes whose places lie in one step of the table.
 void add_of_step(const std::vector<float>& table,
                  double step,
                  const Lanes& place,
@@ -73,7 +74,7 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
     flown.sled = sled;
     try {
         for (const Strobe& strobe : flown.strobes) {
-            require_over_floor(sled, strobe, {});  // else no number of lamps would do
+            require_over_floor(sled, strobe, {});  // otherwise no number of lamps is enough
             require_over_floor(sled, strobe, grid_of_lamps(flown, strobe));
         }
     } catch (const InputError& error) {

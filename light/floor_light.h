@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of a rig's strobes on the bare floor, as a place of the image sees it: the one sum.
+// The light of a rig's strobes on the bare floor, at a place of the image: the one sum.
 //
 //   S_c = sum over lamps of  share I(w) cos(i) / d^2 T_c(d + r)  +  highlight
 //
@@ -8,27 +8,27 @@
 // I(w)    beam, per direction (beam_light.h)            cos(i)  at the floor (floor_arrival.h)
 // d, r    lamp to floor, floor to camera, in water      T_c     signal by path (signal_table.h)
 //
-// Behind a port every wavelength has a ray of its own. G, what one lamp counts, is a smooth
+// Behind a port every wavelength has its own ray. G, the contribution of one lamp, is a smooth
 // function of the water's index, so the signal is
 //
 //   S_c = sum_j  G_j T_jc(l_j)
 //
-// over the index nodes (index_nodes.h). Half way between nodes
+// over the index nodes (index_nodes.h). Halfway between nodes
 //
 //   doubt = max |G(n) - sum_j G(n_j) l_j(n)|
 //
-// tells where it is not: a kink of the beam lies between two nodes, of which a single one shows
-// there at least a third of the most that it does anywhere. What shows nothing is a ray that
-// crosses a kink and comes back; unless the kink is steep that is little, so steep ones are looked
-// for as such (beam_crease.h), on the parabola through the nodes. A place whose doubt is over
-// kMostDoubt of its signal, or where a ray crosses a steep kink, has a ray for each wavelength,
+// shows where it is not smooth: a kink of the beam between two nodes shows there with at least a
+// third of its maximum. A ray that crosses a kink and returns does not show; unless the kink is
+// steep the effect is small, so steep ones are searched for explicitly (beam_crease.h), on the
+// parabola through the nodes. A place whose doubt exceeds kMostDoubt of its signal, or where a ray
+// crosses a steep kink, gets a ray for each wavelength,
 //
 //   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
 //
-// Of a camera without a port, places are asked for in lanes (base/lanes.h).
+// For a camera without a port, places are computed in lanes (base/lanes.h).
 //
-// A beam's edge, which dispersion spreads over several pixels, is sharp and stands where the middle
-// index has it.
+// A beam's edge, which dispersion spreads over several pixels, is sharp and located by the middle
+// index.
 #pragma once
 
 #include "base/lanes.h"
@@ -54,14 +54,14 @@ namespace aphotic {
 
 inline constexpr double kMostDoubt = 1e-5;
 
-// Of the middle index, the first and the last; then half way between the middle and either.
+// For the middle index, the first and the last; then halfway between the middle and either.
 inline constexpr std::size_t kLooks = 2 * kIndexNodes - 1;
 using PlaceRays = std::array<FloorRay, kLooks>;
 
-// Their wavelengths: of a camera without a port the first alone.
+// Their wavelengths: for a camera without a port only the first.
 [[nodiscard]] std::vector<double> place_rays_nm(const Rig& rig);
 
-// The rays of a camera at the indices of light, whatever the sled.
+// The rays of a camera at the indices of light, independent of the sled's pose.
 class CameraRays {
   public:
     CameraRays(const Rig& rig, int threads);
@@ -69,7 +69,7 @@ class CameraRays {
     CameraRays(const Rig& rig, double lambda_nm, int threads);
 
     [[nodiscard]] std::size_t nodes() const { return has_port_ ? kIndexNodes : 1; }
-    // At pixels' centres and between them. Those that are looked along only if asked for.
+    // At pixels' centres and between them. The rays halfway between nodes only if requested.
     [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
     // Directions in air.
     [[nodiscard]] LaneVector in_air(const Lanes& column, const Lanes& row) const {
@@ -88,19 +88,19 @@ struct FloorLamp {
     std::size_t strobe = 0;
 };
 
-// What a place of the image has of some lamps.
+// The light of some lamps at a place of the image.
 struct PlaceLight {
     Signals signals{};
     Signals doubts{};
     bool crosses = false;    // a steep kink
-    bool is_before = false;  // light whose path is shorter than the table's
+    bool is_before = false;  // light whose path is shorter than the table's range
     bool is_beyond = false;  // or longer
 };
 
-// Places that a camera without a port sees: its rays start at the pupil.
+// Places seen by a camera without a port: its rays start at the pupil.
 struct LaneRays {
     LaneVector direction;
-    Lanes down;  // 0 where no floor is seen
+    Lanes down;  // 0 where it sees no floor
 };
 struct LaneLight {
     std::array<Lanes, kChannels> signals{};
@@ -116,7 +116,7 @@ struct LaneLight {
 
 class FloorLight {
   public:
-    // For one sled of the rig, whose pose this is. All but the sled must outlive it.
+    // For one pose of the rig's sled. Everything but the sled must outlive it.
     FloorLight(const Rig& rig, const Sled& sled, const SignalTable& table, const CameraRays& rays);
 
     [[nodiscard]] const std::vector<FloorLamp>& lamps() const { return lamps_; }
@@ -127,15 +127,15 @@ class FloorLight {
     [[nodiscard]] PlaceRays rays_at(double column, double row, bool looks) const {
         return rays_.at(column, row, floor_, looks);
     }
-    // On another plane than the sled's floor.
+    // On a plane other than the sled's floor.
     [[nodiscard]] PlaceRays rays_at(double column, double row, const Plane& plane) const {
         return rays_.at(column, row, plane, false);
     }
-    // Adds what a lamp gives, with its doubts where the rays were looked along.
+    // Adds a lamp's light, with its doubts if the halfway rays were computed.
     void add(const FloorLamp& lamp, const PlaceRays& rays, bool looks, PlaceLight& light) const;
     [[nodiscard]] LaneRays rays_at(const Lanes& column, const Lanes& row) const;
     void add(const FloorLamp& lamp, const LaneRays& rays, LaneLight& light) const;
-    // By a ray for each wavelength, and for all these lamps.
+    // With a ray for each wavelength, for all these lamps.
     [[nodiscard]] Signals dispersed(std::span<const FloorLamp* const> lamps,
                                     double column,
                                     double row,
@@ -148,11 +148,12 @@ class FloorLight {
         std::vector<Crease> steep;
         const LampSignal* signal;
     };
-    // Of one lamp along one ray.
+    // For one lamp along one ray.
     [[nodiscard]] FloorArrival arrive(const FloorLamp& lamp,
                                       const FloorRay& ray,
                                       const Eigen::Vector3d* from) const;
-    // Adds what arrives, by the table of an index node, at a place that is returned; -1: none.
+    // Adds the light that arrives, by the table of an index node; returns the place in the table,
+    // or -1 for no light.
     double shine(const LampSignal& signal,
                  std::size_t node,
                  const FloorArrival& arrived,
@@ -170,8 +171,8 @@ class FloorLight {
     std::vector<FloorLamp> lamps_;
 };
 
-// An InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of the
-// rig over the floor.
+// An InputError, which names the sled's pose and the strobe, unless all lamps of the rig are above
+// the floor.
 void require_over_floor(const Rig& rig, const Sled& sled);
 [[nodiscard]] std::string in_words(const Sled& sled);
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A ray of the image, the floor that it meets, and the way of a lamp's light there.
+// A ray of the image, the floor point that it meets, and the path of a lamp's light to it.
 //
-// A ray starts at o and goes along the unit vector D. With `down` the unit vertical, H the height
-// of o over the floor and w = down . D, it meets the floor at P = o + D H/w. From a lamp at s the
-// light comes along
+// A ray starts at o along the unit vector D. With `down` the unit vertical, H the height of o above
+// the floor and w = down . D, it meets the floor at P = o + D H/w. Light from a lamp at s arrives
+// along
 //
 //   V = w (P - s) = w (o - s) + H D
 //
 // a vector that stays finite towards the horizon.
 //
-// The scalar T is a number, or one with its derivatives (ceres::Jet), where a fit asks how all this
-// moves with the floor: rays and lamps are the sled's own and stay.
+// The scalar T is a number, or a number with derivatives (ceres::Jet) for a fit that moves the
+// floor: rays and lamps are fixed to the sled.
 #pragma once
 
 #include "rig/geometry.h"
@@ -41,7 +41,7 @@ using FloorRay = BasicFloorRay<double>;
             .height_m = height_above(floor, ray.origin_m)};
 }
 
-// V; 0 where the ray sees no floor.
+// V; 0 if the ray sees no floor.
 template <typename T>
 [[nodiscard]] Vector3<T> towards(const Eigen::Vector3d& lamp_m, const BasicFloorRay<T>& ray) {
     if (!ray.sees_floor()) return Vector3<T>::Zero();

@@ -7,7 +7,7 @@
 namespace aphotic {
 namespace {
 
-// The wavelength whose water index this is; the index falls with the wavelength.
+// The wavelength at which water has this index; the index falls with the wavelength.
 double wavelength_of_index(const Rig& rig, double index) {
     WavelengthRange between = rig.camera.range;
     constexpr int kHalvings = 60;

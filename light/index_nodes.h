@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Light through a port, which every wavelength takes by a ray of its own, from the rays of a few:
+// Light through a port, where every wavelength has its own ray, from the rays of a few:
 //
 //   L(n) = sum_j L(n_j) l_j(n),      l_j(n) = prod_{m != j} (n - n_m) / (n_j - n_m)
 //
 // n    the water's refractive index      n_j  both ends of its range, and its middle
 // l_j  Lagrange's polynomials: what light of node j's ray counts at another wavelength
 //
-// Right to the third order of n where L is smooth. A kink of L lies between two nodes, wherever it
-// is; who cannot rule one out looks half way between nodes (light/floor_light.h).
+// Accurate to third order in n where L is smooth. A kink of L lies somewhere between two nodes; a
+// caller that cannot rule one out checks halfway between nodes (light/floor_light.h).
 //
-// Without a port one node serves, and counts 1.
+// Without a port one node suffices, with weight 1.
 #pragma once
 
 #include "rig/rig.h"

@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Bits of an image coordinate: a pixel of the largest image, and more than the path can tell.
+// Bits of an image coordinate: a pixel of the largest image, and finer than the path depends on.
 constexpr int kBits = 20;
-// More than any path, and rising away from the floor, so that a search finds its way back.
+// Larger than any path, and rising away from the floor, so that a search finds its way back.
 constexpr double kNoFloor_m = 1e30;
 // An emitter may be larger than its distance to the floor.
 constexpr double kLeastPath_m = 1e-6;
@@ -50,7 +50,8 @@ double shortest_path_m(const Rig& rig, const Strobe& strobe, double lambda_nm) {
         .second;
 }
 
-// Where light that falls as exp(-K l) / l^3, no faster than any here, is down to kDarkShare.
+// Where light that falls as exp(-K l) / l^3, which is no faster than any here, has fallen to
+// kDarkShare.
 double darkest_path_m(const Rig& rig, double shortest_m) {
     const double K_per_m = rig.water.least_attenuation_per_m();
     double l_m = shortest_m;
@@ -62,7 +63,7 @@ double darkest_path_m(const Rig& rig, double shortest_m) {
 }
 
 std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
-    // Where rays bend, the longest path may come from anywhere along the rim; else from a corner.
+    // Where rays bend, the longest path may be anywhere along the rim; otherwise at a corner.
     constexpr int kWhereRaysBend = 512;
     const int steps = camera.port || camera.lens ? kWhereRaysBend : 1;
     std::vector<std::array<double, 2>> rim;
@@ -78,7 +79,7 @@ std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
     return rim;
 }
 
-// The shortest path by way of floor that is lit; 0 when the grid finds none.
+// The shortest path via lit floor; 0 if the grid finds none.
 double first_lit_path_m(const Rig& rig) {
     constexpr std::size_t kGrid = 65;
     double first_m = std::numeric_limits<double>::infinity();
@@ -113,7 +114,7 @@ void widen_by(const Rig& rig, const Object& object, PathRange& paths) {
     }
 }
 
-// Of the floor alone; infinity and 0 when the image sees none.
+// For the floor only; infinity and 0 if the image sees none.
 PathRange floor_path_range(const Rig& rig) {
     const Camera& camera = rig.camera;
     std::vector<double> wavelengths{std::midpoint(camera.range.first_nm, camera.range.last_nm)};
@@ -137,13 +138,14 @@ PathRange floor_path_range(const Rig& rig) {
     if (paths.shortest_m == std::numeric_limits<double>::infinity()) return paths;
     paths.shortest_m = std::max(kLeastPath_m, paths.shortest_m / kPathRoom);
     paths.longest_m *= kPathRoom;
-    // No farther than light comes from, with the horizon in view or nearly so.
+    // No farther than light comes from, if the horizon is in view or nearly so.
     const double darkest_m = darkest_path_m(rig, std::max(paths.shortest_m, first_lit_path_m(rig)));
     if (paths.has_horizon || darkest_m < paths.longest_m) paths.longest_m = darkest_m;
     return paths;
 }
 
-// Least and most of what the sleds have, and 0 between them: at a level sled, paths are shortest.
+// The least and greatest of the sleds' values, and 0 between them: paths are shortest for a level
+// sled.
 std::set<double> extremes(const std::vector<Sled>& sleds, double Sled::*part) {
     const auto [least, most] = std::ranges::minmax(sleds, {}, part);
     return {least.*part, std::clamp(0.0, least.*part, most.*part), most.*part};

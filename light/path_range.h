@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The lengths of the paths on which light reaches a rig's camera.
+// The path lengths of the light that reaches a rig's camera.
 //
 //   l = d + r
 //
 //   d   from a lamp to the floor that the image sees, in water  [m]
 //   r   from there to the camera, in water                      [m]
 //
-// Over the image l is quasi-convex: so the longest is at a corner, and the shortest is found by
-// nested searches along rows and columns. Emitters add and take half their diagonal. Behind a port
-// all of the rim is looked at, at both ends of the range and in its middle; kPathRoom is for what
-// lies between.
+// Over the image l is quasi-convex: the longest path is at a corner, and the shortest is found by
+// nested searches along rows and columns. Emitters add and subtract half their diagonal. Behind a
+// port the whole rim is searched, at both ends of the range and in its middle; kPathRoom allows for
+// what lies between.
 //
-// Objects only widen this: a path by way of an object is no shorter than from the lamp straight to
-// its bounds and on to the camera, and no longer than by their farthest corners.
+// Objects only widen this: a path via an object is no shorter than from the lamp straight to its
+// bounds and on to the camera, and no longer than via their farthest corners.
 //
-// With the horizon in view paths have no end, or nearly so when it is close. The longest that
-// counts is that from which no light over kDarkShare of the brightest can come.
+// With the horizon in view paths have no end, or almost none when it is close. The longest relevant
+// path is that beyond which no light above kDarkShare of the brightest can come.
 #pragma once
 
 #include "rig/rig.h"
@@ -34,10 +34,10 @@ struct PathRange {
     bool has_horizon = false;  // longest_m is where the light ends, not the floor
 };
 
-// Both zero when the image sees no floor and no object.
+// Both zero if the image sees no floor and no object.
 [[nodiscard]] PathRange path_range(const Rig& rig);
 
-// Poses between which all of these are: the lowest and the highest, level and as tilted as any.
+// Poses that bracket all of these: the lowest and the highest, level and as tilted as any.
 [[nodiscard]] std::vector<Sled> corners_of(const std::vector<Sled>& sleds);
 
 }  // namespace aphotic

@@ -11,20 +11,19 @@ namespace {
 using Eigen::Array3d;
 using Eigen::ArrayXd;
 
-// sum_j w_cj K_j^power exp(-(K_j - K_0) l). Eigen's exponential goes no lower than e^-709.8,
-// whatever it is asked for.
+// sum_j w_cj K_j^power exp(-(K_j - K_0) l). Eigen's exponential never goes below e^-709.8.
 Array3d moment(const SpectralSum& sum, double path_m, int power, double K_0_per_m) {
     constexpr double kBlackDepth = 700.0;
     const ArrayXd depth = (sum.K_per_m - K_0_per_m) * path_m;
     const ArrayXd left = (depth < kBlackDepth).select((-depth).exp(), 0.0);
-    // Eigen's power of 0 and 1 is as slow as any, and the table asks for these alone.
+    // Eigen's powers of 0 and 1 are as slow as any, and the table needs only these.
     ArrayXd scaled = left;
     if (power == 1) scaled *= sum.K_per_m;
     if (power > 1) scaled *= sum.K_per_m.pow(power);
     return (sum.weights.transpose().matrix() * scaled.matrix()).array();
 }
 
-// The longest step whose bound keeps the error, of one channel.
+// The longest step whose bound meets the error, for one channel.
 double longest_step_m(double m_1, double m_4, double error) {
     constexpr double kHermite = 384.0;
     double step_m = std::pow(kHermite * error / m_4, 0.25);
@@ -53,7 +52,7 @@ SpectralSum spectral_sum(const Water& water,
 }
 
 PathSteps path_steps(const SpectralSum& sum, const PathRange& paths, double error) {
-    // Scaled by the least loss, for of long paths nothing else would be left.
+    // Scaled by the least loss, or nothing would remain of long paths.
     const double K_0_per_m = sum.K_per_m.minCoeff();
     const Array3d total = moment(sum, paths.shortest_m, 0, K_0_per_m);
     const Array3d first = moment(sum, paths.shortest_m, 1, K_0_per_m);

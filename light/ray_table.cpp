@@ -24,7 +24,7 @@ std::array<double, kNodesOfCubic> cubic_weights(double u) {
     return {-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0};
 }
 
-// The first of the four nodes about a place, and what each counts.
+// The first of the four nodes around a place, and their weights.
 struct Stencil {
     std::size_t first;
     std::array<double, kNodesOfCubic> weights;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays in water of every place of the image at some wavelengths. A pinhole's have a formula.
-// Those of calibrated lenses and of ports take long, so they come from pixel_ray() (rig/geometry.h)
-// at the nodes of a grid over the image; between these each is a cubic through the four next nodes
-// of either way. The grid is as fine as keeps rays to kRayTableError in the middles of its cells
-// along the image's rim and its middle lines, where lenses bend most and least. Where nodes would
-// be as many as pixels, each ray is computed by itself.
+// The rays in water for every place of the image at some wavelengths. A pinhole's have a formula.
+// Those of calibrated lenses and of ports are slow, so they come from pixel_ray() (rig/geometry.h)
+// at the nodes of a grid over the image; between nodes each is a cubic through the four nearest
+// nodes either way. The grid is fine enough for kRayTableError in the middles of its cells along
+// the image's rim and middle lines, where lenses bend most and least. If there would be as many
+// nodes as pixels, each ray is computed directly.
 #pragma once
 
 #include "base/lanes.h"
@@ -18,14 +18,14 @@
 
 namespace aphotic {
 
-// Of directions [rad], and of origins as a share of a metre.
+// For directions [rad], and for origins in metres.
 inline constexpr double kRayTableError = 2e-9;
 
 class RayTable {
   public:
     RayTable(const Rig& rig, std::vector<double> lambda_nm, int threads);
 
-    // Of the first of the wavelengths; pixels' centres are at .5.
+    // For the first wavelength; pixels' centres are at .5.
     void look(double column, double row, std::span<WaterRay> rays) const;
     // Directions of the first wavelength.
     [[nodiscard]] LaneVector look(const Lanes& column, const Lanes& row) const;
@@ -33,7 +33,7 @@ class RayTable {
     [[nodiscard]] bool has_nodes() const { return !nodes_.empty(); }
 
   private:
-    // Nodes along one way of the image.
+    // Nodes along one side of the image.
     struct Axis {
         Axis(int pixels, double most_apart_px);
         [[nodiscard]] double place_px(double node) const;

@@ -30,7 +30,7 @@ struct Relief {
                static_cast<std::size_t>(column);
     }
     [[nodiscard]] bool knows(std::size_t pixel) const { return std::isfinite(point_m[pixel].z()); }
-    // The plane through the point that touches the floor there.
+    // The plane that touches the floor at the point.
     [[nodiscard]] Plane plane(std::size_t pixel) const {
         return {.point_m = point_m[pixel].cast<double>(), .normal = normal[pixel].cast<double>()};
     }
@@ -41,7 +41,7 @@ struct Relief {
     }
 };
 
-// Every so many of `count` places from the first on, and the last: two at least.
+// Every nth of `count` places from the first on, and the last: at least two.
 [[nodiscard]] inline std::vector<int> every(int step, int count) {
     std::vector<int> places{0};
     for (int place = step; place < count - 1; place += step) places.push_back(place);

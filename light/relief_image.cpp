@@ -36,7 +36,7 @@ void for_each_pixel(const Cell& cell, const Relief& relief, const Work& work) {
         for (int column = cell.column; column <= last_column; ++column) work(column, row);
 }
 
-// look(column, row) at every vertex, then fill(cell), which leaves these as they are.
+// Calls look(column, row) at every vertex, then fill(cell), which leaves the vertices as they are.
 template <typename Look, typename Fill>
 void by_cells(const Relief& relief, int step_px, int threads, const Look& look, const Fill& fill) {
     const std::vector<int> columns = every(step_px, relief.width_px);
@@ -57,8 +57,8 @@ void by_cells(const Relief& relief, int step_px, int threads, const Look& look, 
     });
 }
 
-// Of one lamp, by pixel: 0 where it is not hidden. Between vertices of the mesh it is the same
-// where all four about a cell agree.
+// For one lamp, by pixel: 0 where it is visible. Between vertices of the mesh the value is shared
+// if all four corners of a cell agree.
 std::vector<std::uint8_t> shadow_of(const ReliefShadow& shadow,
                                     const Relief& relief,
                                     const Eigen::Vector3d& lamp_m,
@@ -115,7 +115,7 @@ class ReliefPainter {
     ReliefLight found_;
 };
 
-// What each corner counts at a place of the cell.
+// The weights of the corners at a place of the cell.
 std::array<float, 4> shares_at(const Cell& cell, int column, int row) {
     const float x = static_cast<float>(column - cell.column) /
                     static_cast<float>(std::max(1, cell.right - cell.column));
@@ -154,7 +154,7 @@ void ReliefPainter::look(int column, int row) {
         sample(c, pixel) = static_cast<float>(place.signals[c]);
 }
 
-// Points and normals are those of the corners, interpolated, and the same lamps light these.
+// Points and normals are interpolated from the corners', and the same lamps light all of them.
 bool ReliefPainter::is_smooth(const Cell& cell) const {
     const std::array<std::size_t, 4> at = corners_of(cell, relief_);
     for (const std::size_t corner : at)
@@ -185,10 +185,11 @@ void ReliefPainter::fill(const Cell& cell) {
         look(column, row);
         const std::array<float, 4> shares = shares_at(cell, column, row);
         for (std::size_t c = 0; c < kChannels; ++c) {
-            float told = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
+            float interpolated = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k)
+                interpolated += shares[k] * sample(c, at[k]);
             const float there = sample(c, relief_.at(column, row));
-            is_right &= std::abs(told - there) <= kReliefError * there;
+            is_right &= std::abs(interpolated - there) <= kReliefError * there;
         }
     }
     for_each_pixel(cell, relief_, [&](int x, int y) {
@@ -201,9 +202,10 @@ void ReliefPainter::fill(const Cell& cell) {
         const std::array<float, 4> shares = shares_at(cell, x, y);
         found_.seen[pixel] = found_.seen[at[0]];
         for (std::size_t c = 0; c < kChannels; ++c) {
-            float told = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k) told += shares[k] * sample(c, at[k]);
-            sample(c, pixel) = told;
+            float interpolated = 0.0F;
+            for (std::size_t k = 0; k < at.size(); ++k)
+                interpolated += shares[k] * sample(c, at[k]);
+            sample(c, pixel) = interpolated;
         }
     });
 }
@@ -217,7 +219,7 @@ ReliefLight relief_light(const Rig& rig,
     const ReliefShadow shadow(relief);
     std::vector<BeamEdges> edges;
     for (const Strobe& strobe : rig.strobes) edges.emplace_back(strobe);
-    std::mt19937 engine(1);  // numbers whose sums are seldom the same by chance
+    std::mt19937 engine(1);  // numbers whose sums rarely coincide
     std::vector<LampOnRelief> lamps;
     for (const FloorLamp& lamp : light.lamps()) {
         lamps.push_back({.lamp = lamp,

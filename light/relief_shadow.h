@@ -4,8 +4,8 @@
 // n-th of its pixels, n so that it is at most kShadowMesh_px wide; what is narrower casts no
 // shadow, and where the range jumps, the mesh is a wall down to what lies behind.
 //
-// A ray begins kShadowBias of the point's distance off the floor, along its normal and towards the
-// lamp: ranges are not as even as floors are.
+// A ray starts kShadowBias of the point's distance off the floor, along its normal and towards the
+// lamp, since measured ranges are rougher than the floor.
 #pragma once
 
 #include "light/relief.h"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kDepths = 4;  // of a cubic
 
-// ln Z in steps, of depths that light comes back from.
+// ln Z in steps, for depths from which light returns.
 double steps_to(double depth_m) {
     const double lit_m = std::clamp(depth_m, kReliefPaths.shortest_m, kReliefPaths.longest_m);
     return std::log(lit_m) / std::log1p(kVeilDepthStep);
@@ -42,7 +42,7 @@ std::shared_ptr<const ReliefVeil::Level> ReliefVeil::level(int k) const {
     std::shared_ptr<const Level>& known = levels_[k];
     if (known) return known;
     const double depth_m = std::pow(1.0 + kVeilDepthStep, k);
-    // A floor under which nothing is: rays are asked for as they are.
+    // A floor with nothing below it: rays are requested as they are.
     const Plane level{.point_m = {0.0, 0.0, depth_m}, .normal = -Eigen::Vector3d::UnitZ()};
     auto found = std::make_shared<Level>();
     VeilNodes nodes;

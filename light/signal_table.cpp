@@ -10,17 +10,17 @@
 namespace aphotic {
 namespace {
 
-// Shares of the error that is asked for: the rest is dispersion's.
+// Shares of the requested error: the rest is dispersion's.
 constexpr double kGridShare = 0.1;
 constexpr double kTableShare = 0.5;
-// What has a ray for each wavelength changes faster over them than light that keeps its path.
+// Light with a ray for each wavelength changes faster over them than light that keeps its path.
 constexpr double kDispersedShare = 1e-4;
 // Lagrange's polynomials of three even points sum, in size, to 5/4 at most.
 constexpr double kLebesgue = 5.0 / 4.0;
 
 using Grid = std::vector<WeightedWavelength>;
 
-// Of the grid, what any channel sees.
+// The part of the grid that any channel sees.
 Grid seen_of(const Grid& grid) {
     Grid seen;
     std::ranges::copy_if(grid, std::back_inserter(seen), [](const WeightedWavelength& node) {
@@ -29,7 +29,7 @@ Grid seen_of(const Grid& grid) {
     return seen;
 }
 
-// What a lamp's light is on the floor, and bare, of which the floor's highlight is made.
+// A lamp's light on the floor, and bare, for the floor's highlight.
 struct LampLights {
     LightOf diffuse;
     LightOf highlight;

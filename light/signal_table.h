@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The floor's signal over the length of light's path, for every lamp of a rig (path_table.h):
+// The floor's signal over the light's path length, for every lamp of a rig (path_table.h):
 //
 //   T_sjc(l) = int Phi_s rho Q_c l_j(n) exp(-K l) dlambda
 //
 // s    lamp spectrum Phi_s             rho  the floor's reflectance; 1 for its highlight
 // Q_c  response of channel c           l_j  share of an index node (index_nodes.h)
 //
-// Behind a port besides by wavelength, for light whose rays may not be interpolated over the index.
+// Behind a port also by wavelength, for light whose rays may not be interpolated over the index.
 #pragma once
 
 #include "light/path_table.h"
@@ -28,9 +28,9 @@ struct LampSignal {
     SpectralSum dispersed_highlight;
 };
 
-// Rays at any index behind a port, from those of so many nodes: they move smoothly with the index,
-// but glass and water disperse light by different laws. Nine nodes are right to 1e-9 of a slope,
-// five to 1e-7.
+// Rays at any index behind a port, interpolated from so many nodes: they move smoothly with the
+// index, but glass and water disperse light by different laws. Nine nodes are accurate to 1e-9 of a
+// slope, five to 1e-7.
 inline constexpr std::size_t kRayNodes = 9;
 
 struct SignalTable {
@@ -45,11 +45,11 @@ struct SignalTable {
 // error: relative, of the spectral integral and of the table. Without paths there is no light.
 [[nodiscard]] SignalTable signal_table(const Rig& rig, const PathRange& paths, double error);
 
-// The lamp spectra, each once, and which of them each strobe has.
+// The distinct lamp spectra, and which of them each strobe has.
 [[nodiscard]] std::vector<const Spectrum*> lamps_of(const Rig& rig,
                                                     std::vector<std::size_t>& by_strobe);
 
-// Adds factor * T at a path of so many steps of a table.
+// Adds factor * T at a path, given in steps of a table.
 using Signals = std::array<double, kChannels>;
 inline void add_signal(const std::vector<float>& table,
                        double place,

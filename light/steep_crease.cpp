@@ -12,7 +12,8 @@ namespace {
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 // The nodes, of one angle of a table, at which the slope of I jumps by more than `most`. value(i,
-// k): at node i of this angle and k of the other; per_rad(k): nodes' angle to the way on the globe.
+// k): at node i of this angle and k of the other; per_rad(k): ratio of the nodes' angle to the arc
+// on the globe.
 template <typename Value, typename PerRad>
 std::vector<double> steep_nodes(const std::vector<double>& nodes,
                                 std::size_t others,
@@ -20,7 +21,7 @@ std::vector<double> steep_nodes(const std::vector<double>& nodes,
                                 const Value& value,
                                 const PerRad& per_rad) {
     std::vector<double> steep;
-    const auto slope = [&](std::size_t i, std::size_t k) {  // from i to the next, 0 beyond the ends
+    const auto slope = [&](std::size_t i, std::size_t k) {  // from i to the next, 0 past the ends
         return i + 1 < nodes.size() ? (value(i + 1, k) - value(i, k)) / (nodes[i + 1] - nodes[i])
                                     : 0.0;
     };
@@ -35,7 +36,7 @@ std::vector<double> steep_nodes(const std::vector<double>& nodes,
     return steep;
 }
 
-// The same table of its steep lines alone, for its creases.
+// The same table with only its steep lines, for its creases.
 BeamTable with_steep_lines(const BeamTable& table) {
     const std::size_t rows = table.vertical_rad.size();
     const double most = kSteepPerDegree / kDegree_rad * largest_intensity(table);
@@ -91,7 +92,7 @@ std::vector<Crease> steep_creases(const Beam& beam, const BeamFrame& frame) {
 }
 
 bool crosses(const Crease& crease, const std::array<Eigen::Vector3d, 3>& towards) {
-    // How far the way may be from the parabola, as a share of what it changes.
+    // How far the path may be from the parabola, as a share of its change.
     constexpr double kOff = 0.02;
     const auto height = [&](const Eigen::Vector3d& V) {
         if (!crease.is_quadratic) return crease.l.dot(V) / V.norm() - crease.at;

@@ -26,7 +26,7 @@ std::array<std::array<double, 2>, kTilePlaces> tile_places(int width, int height
 
 namespace {
 
-// Of what each ray has, of any length.
+// A direction for each ray, of any length.
 template <typename Way>
 TileCone cone_about(std::span<const FloorRay> rays, const Way& way_of) {
     TileCone cone{.middle = way_of(rays.front()).normalized()};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The directions in which a lamp's light goes to what a tile of pixels sees of the floor: those
-// within a cone about one of them that takes in the directions to the tile's corners and to the
-// middles of its sides, kTileRoom times as wide for what a lens bends. On a plane, seen through a
-// pinhole, the corners are the farthest off.
+// The directions from a lamp to the floor that a tile of pixels sees: those within a cone about one
+// of them that contains the directions to the tile's corners and to the middles of its sides,
+// kTileRoom times as wide to allow for the lens's bending. On a plane, seen through a pinhole, the
+// corners are the farthest off.
 #pragma once
 
 #include "light/floor_ray.h"
@@ -29,13 +29,13 @@ struct TileCone {
     bool sees_any = false;
 };
 
-// Of a lamp, and of the rays of a tile's places: the first is the middle one's.
+// For a lamp and the rays of a tile's places, the middle one's first.
 [[nodiscard]] TileCone tile_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
 
-// Whether a crease may come within the cone. False is certain.
+// Whether a crease may enter the cone. False is certain.
 [[nodiscard]] bool comes_into(const TileCone& cone, const Crease& crease);
 
-// The planes through the lamp and each ray, by their normals, are within a cone, too.
+// The normals of the planes through the lamp and each ray are within a cone, too.
 [[nodiscard]] TileCone plane_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
 
 }  // namespace aphotic

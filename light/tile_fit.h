@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is smooth over a tile of pixels, from a few places of it: the polynomial of degree
-// kTilePoints - 1 each way through Chebyshev's points of the second kind, which lie from the first
-// pixel's centre to the last's, close together at both ends.
+// A smooth function over a tile of pixels, from a few of its places: the polynomial of degree
+// kTilePoints - 1 each way through Chebyshev's points of the second kind, which run from the first
+// pixel's centre to the last's, dense at both ends.
 //
 //   f(x, y) = sum_i sum_j l_i(x) l_j(y) f(x_i, y_j)
 //
-// Between these, at places of kTileChecks, who asks compares it with f itself. They stand in the
-// middles of gaps between points: in the four corners, and in every gap of either way twice, so
-// that no line along an axis slips past them.
+// Between them, at the places kTileChecks, the caller compares it with f itself. These are in the
+// middles of gaps between points: in the four corners, and twice in every gap of either direction,
+// so that no line along an axis slips past them.
 //
 // L. N. Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 2 and 5.
 #pragma once
@@ -42,7 +42,7 @@ using TileNodes = Eigen::Matrix<double, kTilePoints, kTilePoints>;  // (row, col
 [[nodiscard]] double chebyshev_point(int i);
 [[nodiscard]] std::array<double, kTilePoints> chebyshev_shares(double x);
 
-// One way across a tile of so many pixels. Places are pixels from the first one's centre.
+// One side of a tile of so many pixels. Places are pixels from the first one's centre.
 struct TileAxis {
     std::array<double, kTilePoints> points_px{};
     std::array<double, kTileGaps> gaps_px{};  // their middles
@@ -51,9 +51,9 @@ struct TileAxis {
 };
 [[nodiscard]] const TileAxis& tile_axis(int pixels);  // 1 to kTilePixels
 
-// Of f = sum_i sum_j a_ij T_i(x) T_j(y), in Chebyshev's polynomials, what the last degree and a
-// quarter of the last but one come to, either way. Of a smooth f it is what the polynomial is off
-// by, or more; a step or a kink between any two places shows in it, wherever it is.
+// For f = sum_i sum_j a_ij T_i(x) T_j(y), in Chebyshev's polynomials: the size of the last degree's
+// terms plus a quarter of the last but one's, either way. For a smooth f that is the polynomial's
+// error, or more; a step or a kink between any two places shows in it, wherever it is.
 [[nodiscard]] double last_degrees(const TileNodes& nodes);
 
 }  // namespace aphotic

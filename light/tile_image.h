@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Light at every pixel of an image, at the price of what is not smooth.
+// Light at every pixel of an image, at a cost that depends on how much of it is not smooth.
 //
-// The image is cut into square tiles. What of a tile's light may be smooth there is computed at the
-// points of tile_fit.h and interpolated, if at the places between it is right. The rest goes on to
-// the four quarters of the tile; and at kDirectPixels it is computed pixel by pixel. Tiles depend
-// on the image alone: neither threads nor the rows that are asked for change a bit.
+// The image is cut into square tiles. The parts of a tile's light that may be smooth are computed
+// at the points of tile_fit.h and interpolated, if they are right at the places between. The rest
+// goes on to the tile's four quarters, and at kDirectPixels is computed pixel by pixel. Tiles
+// depend only on the image: neither threads nor the requested rows change a bit.
 //
-// Whoever has such light (floor_image.cpp, veil_map.cpp) tells it by a class, an object for each
-// thread, with
+// Users of this (floor_image.cpp, veil_map.cpp) supply a class, one object per thread, with
 //
 //   Piece, Group    of light: what may be smooth in one tile and not in another, and pieces that
 //                   are interpolated together
@@ -56,17 +55,17 @@ struct Tile {
 };
 [[nodiscard]] std::array<Tile, 4> quarters(const Tile& tile);
 
-// A place of an image: column and row, of pixels' corners.
+// A place of an image: column and row, at pixels' corners.
 using PixelPlace = std::array<double, 2>;
 
-// A polynomial at a place between its points.
+// A polynomial's value at a place between its points.
 struct TileCheck {
-    PlaceSignals told{};
+    PlaceSignals interpolated{};
     PlaceSignals last_degrees{};  // tile_fit.h
     PlaceSignals signals{};       // the whole there, as far as it is known
 };
 
-// What most have to say of it.
+// The common case of most members.
 struct TileLight {
     static constexpr std::size_t kLanes = 1;
     static const auto& of_lane(const auto& found, std::size_t /*k*/) { return found; }
@@ -75,7 +74,7 @@ struct TileLight {
     static void settle(const auto&... /*all*/) {}
 };
 
-// Rows of an image of so many, planes one after another.
+// Rows of an image, planes one after another.
 struct ImageRows {
     int width_px = 0;
     int height_px = 0;
@@ -84,13 +83,13 @@ struct ImageRows {
     float* samples = nullptr;
 };
 
-// The tiles of an image that have some of these rows, row by row.
+// The tiles that contain some of these rows, row by row.
 [[nodiscard]] std::vector<Tile> tiles_of(const ImageRows& rows, int tile_px);
 
 using TilePlane = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 void copy_rows(const std::vector<TilePlane>& planes, const Tile& tile, const ImageRows& rows);
 
-// A tile of the image's grid, and what its pixels have so far.
+// A tile of the image's grid, and its pixels' sums so far.
 template <class Light>
 class TilePainter {
   public:
@@ -138,8 +137,8 @@ class TilePainter {
 
     static constexpr std::size_t kLanes = Light::kLanes;
 
-    // Of as many of a tile's places as there are from the first, which at(k) has in pixels from its
-    // first one's centre; the last of them again for lanes that have none.
+    // Lanes of a tile's places from the first on, which at(k) gives in pixels from the tile's first
+    // centre; spare lanes repeat the last place.
     [[nodiscard]] typename Light::Place places_in(const Tile& tile,
                                                   std::size_t first,
                                                   std::size_t count,
@@ -203,13 +202,15 @@ class TilePainter {
             }
             const auto [i, j] = kTileChecks[k];
             for (std::size_t one = 0; one < all.size(); ++one) {
-                Polynomial& told = all[one];
-                TileCheck check{.told = {}, .last_degrees = told.last_degrees, .signals = signals};
+                Polynomial& polynomial = all[one];
+                TileCheck check{.interpolated = {},
+                                .last_degrees = polynomial.last_degrees,
+                                .signals = signals};
                 for (std::size_t c = 0; c < planes_.size(); ++c)
-                    check.told[c] =
-                        down.to_gaps.row(j) * told.nodes[c] * across.to_gaps.row(i).transpose();
-                told.is_right =
-                    told.is_right && light_.is_right(Light::of_lane(found[one], k - first), check);
+                    check.interpolated[c] = down.to_gaps.row(j) * polynomial.nodes[c] *
+                                            across.to_gaps.row(i).transpose();
+                polynomial.is_right = polynomial.is_right &&
+                                      light_.is_right(Light::of_lane(found[one], k - first), check);
             }
         }
     }
@@ -270,10 +271,10 @@ class TilePainter {
     Tile whole_;
     ImageRows rows_;
     std::vector<TilePlane> planes_;
-    PlaceSignals so_far_{};  // of the pixel that is settled: to zero it for each takes as long
+    PlaceSignals so_far_{};  // of the pixel that is settled: zeroing it for each takes as long
 };
 
-// All pieces, by a thread for each of these lights.
+// All pieces, with a thread for each of these lights.
 template <class Light>
 void paint_tiles(std::vector<Light>& by_thread,
                  const std::vector<typename Light::Piece>& pieces,

@@ -23,13 +23,13 @@ constexpr double kNoPole = 10.0;
 
 }  // namespace
 
-// Two directions on the plane of ray and lamp, and what lies between lamp and ray.
+// Two directions in the plane of ray and lamp, and the distance between lamp and ray.
 struct Veil::View {
     double foot_m;            // t_0
     double away_m;            // h
     Eigen::Vector3d towards;  // e, unit, across the ray
     Eigen::Vector3d along;    // u
-    // Where the ray passes a table's pole: the middle, and how far aside.
+    // Where the ray passes a table's pole: the middle, and how far to each side.
     double pole_rad = 0.0;
     double off_pole_rad = kNoPole;
 
@@ -48,9 +48,9 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// A path of this many times 2 h is as good as infinite.
+// A path of this many times 2 h counts as infinite.
 constexpr double kVeilEndRad = 1e-9;
-// On the ray itself a lamp's light has no end; a micrometre beside it has.
+// On the ray itself a lamp's veil is infinite; a micrometre beside it is not.
 constexpr double kVeilNear_m = 1e-6;
 
 double least_loss_in_view_per_m(const Rig& rig) {
@@ -60,7 +60,7 @@ double least_loss_in_view_per_m(const Rig& rig) {
     return least;
 }
 
-// Light over the plane of an emitter, as Gauss-Legendre's rule has it.
+// The lamps of an emitter, by Gauss-Legendre's rule.
 template <class Rule, class Lamps>
 void add_lamps_of(const Strobe& strobe, const BeamFrame& frame, const Rule& rule, Lamps& lamps) {
     for (std::size_t i = 0; i < rule.points.size(); ++i) {
@@ -104,7 +104,7 @@ struct CosSin {
     double sine;
 };
 
-// Of half a panel at most: right to rounding.
+// For half a panel at most: accurate to rounding.
 CosSin near_zero(double x) {
     static_assert(kVeilPanelRad <= 0.36);
     const double q = x * x;
@@ -243,7 +243,7 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
     return light;
 }
 
-// Lagrange's cubic through the four next samples.
+// Lagrange's cubic through the four nearest samples.
 double Veil::Phase::at(double psi_rad) const {
     if (samples.empty()) return function->at(psi_rad);
     const int steps = static_cast<int>(samples.size()) - 1;
@@ -311,7 +311,7 @@ void Veil::add_lamp(const Light& light,
     cuts.clear();
     for (const Crease& crease : light.creases)
         add_crossings(crease, view.towards, view.along, cuts);
-    // Towards what ends like a power panels shrink.
+    // Panels shrink towards an end that behaves like a power.
     const auto shrink_towards = [&](std::size_t from, std::initializer_list<double> steps) {
         const std::size_t end = cuts.size();
         for (std::size_t k = from; k < end; ++k) {
@@ -415,7 +415,7 @@ class Veil::Shine {
     Vector3d seen_;
     double cos_seen_;
     bool is_of_cones_;
-    std::uint32_t lit_ = 0;  // which cones shine here, a bit each
+    std::uint32_t lit_ = 0;  // which cones shine here, one bit each
     const TablePiece* piece_ = nullptr;
 };
 
@@ -454,7 +454,7 @@ void Veil::add_known(const Shine& shine, const KinkPanel& panel, VeilNodes& node
 
 void Veil::add_panels(const Shine& shine, double from, double to, VeilNodes& nodes) const {
     for (double start = from; start < to;) {
-        // Halves of what is left, until a panel is no wider than its room.
+        // Bisects the rest until a panel is no wider than its room.
         double width = to - start;
         double room = 0.0;
         while (true) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The veil: light that the water scatters into the view, on its way from a lamp to the floor or
-// beside it. Single scattering, along the ray of a pixel:
+// elsewhere. Single scattering, along the ray of a pixel:
 //
 //   A(lambda) = Phi(lambda) sum_i b_i(lambda) int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt
 //
@@ -17,24 +17,24 @@
 //
 //   t = t_0 + h tan(phi),   d = h / cos(phi),   dt/d^2 = dphi/h,   psi = phi + 90 degrees
 //
-// so that the integrand is smooth, however near the lamp is to the ray, and the lamp's direction is
-// linear in cos(phi) and sin(phi): where a beam has an edge or a kink crosses the ray in closed
-// form (rig/beam/beam_crease.h). Between these, the kinks of a tabulated phase function and the
-// cut, Gauss-Legendre's rule takes panels no wider than kVeilPanelRad, nor than they are far from
-// +-90 degrees, where scattered light has its poles: forward there (Henyey and Greenstein's lies at
-// -90 degrees +- i ln(1/g)), and exp(-K l) an essential one here. So the integrand is analytic
-// within the ellipse of Bernstein of rho = 3 + sqrt(8) about each panel, and n points err by no
-// more than
+// so that the integrand is smooth, however close the lamp is to the ray, and the lamp's direction
+// is linear in cos(phi) and sin(phi): the points where a beam's edge or kink crosses the ray have a
+// closed form (rig/beam/beam_crease.h). Between these, the kinks of a tabulated phase function and
+// the cut, Gauss-Legendre's rule uses panels no wider than kVeilPanelRad, nor than their distance
+// from +-90 degrees, where scattered light has its poles: forward there (Henyey and Greenstein's
+// lies at -90 degrees +- i ln(1/g)), and exp(-K l) an essential one here. So the integrand is
+// analytic within the ellipse of Bernstein of rho = 3 + sqrt(8) about each panel, and n points err
+// by no more than
 //
 //   64/15 M rho^-2n / (1 - rho^-2)       M: the largest there, of a panel of length 2
 //
-// (Trefethen): 3e-12 M of 8 points. Narrower panels take as many points as keep rho^-2n. What M and
-// the few creases without a closed form add up to is measured: veil_error(). The nodes depend on no
-// wavelength: whoever has them has every wavelength, and the signal as well, by a table over the
-// path's length.
+// (Trefethen): 3e-12 M with 8 points. Narrower panels use as many points as keep rho^-2n. The
+// effect of M and of the few creases without a closed form is measured: veil_error(). The nodes do
+// not depend on wavelength: they serve every wavelength, and the signal as well, by a table over
+// the path's length.
 //
-// An emitter of a size is 3 x 3 lamps by Gauss-Legendre's rule, more with more points. Shadows of
-// objects in the veil are left out.
+// An emitter with a size is 3 x 3 lamps by Gauss-Legendre's rule, more with more points. Shadows of
+// objects in the veil are omitted.
 #pragma once
 
 #include "rig/beam/beam_crease.h"
@@ -53,15 +53,17 @@ namespace aphotic {
 
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
-// Enough for images and maps: off by 2e-6, but where light is lost within a panel, as in water like
-// milk. With as few or fewer, a round table is taken as cubics that are off by kVeilBeamOff of its
-// brightest at most (rig/beam/table_pieces.h), so that its panels do not end at each of its rows.
+// Enough for images and maps: the error is 2e-6, unless light is lost within a panel, as in water
+// like milk. With this many or fewer, a round table is approximated by cubics that are off by at
+// most kVeilBeamOff of its brightest (rig/beam/table_pieces.h), so that panels do not end at each
+// of its rows.
 inline constexpr unsigned kVeilMapPoints = 3;
 inline constexpr double kVeilBeamOff = 1e-4;
-// Light that the water leaves less than e^-kVeilDepth of is left out.
+// Light attenuated below e^-kVeilDepth is omitted.
 inline constexpr double kVeilDepth = 40.0;
 
-// What one strobe of power 1 adds: A = Phi sum_n sum_i b_i weight[i][n] exp(-K path_m[n]).
+// The contribution of one strobe of power 1: A = Phi sum_n sum_i b_i weight[i][n] exp(-K
+// path_m[n]).
 struct VeilNodes {
     std::vector<double> path_m;                 // t + d
     std::vector<std::vector<double>> weight{};  // by scatterer  [1/(m sr)]
@@ -72,15 +74,13 @@ struct VeilNodes {
 
 class Veil {
   public:
-    // points: of a panel; another number than kVeilPoints is for those who measure or state the
-    // error.
+    // points: per panel; values other than kVeilPoints are for measuring or stating the error.
     explicit Veil(const Rig& rig, unsigned points = kVeilPoints);
 
-    // Over the whole length of the ray, which may be infinite; adds nothing to nodes that are
-    // there, it replaces them. Thread safe.
+    // Over the whole length of the ray, which may be infinite; replaces the nodes. Thread-safe.
     void nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
 
-    // The same of a part: each cone of a beam is one, and so is any other beam. Where one has an
+    // The same for a part: each cone of a beam is one, and so is any other beam. Where one has an
     // edge the others are smooth.
     void nodes_of_part(std::size_t part,
                        const WaterRay& ray,
@@ -108,7 +108,7 @@ class Veil {
         bool is_of_optics;     // whose creases all are of power 3/2
         std::optional<Eigen::Vector3d> pole;  // about which a table's angles turn
     };
-    // p over even steps from kVeilCut to pi, where a formula takes long.
+    // p at even steps from kVeilCut to pi, if its formula is slow.
     struct Phase {
         const PhaseFunction* function;
         std::vector<double> samples;
@@ -124,8 +124,8 @@ class Veil {
         double sine;
         double weight;  // of the rule, times the panel's width
     };
-    // From one kink to the next: the same panel for every ray and lamp. Without points where it
-    // would be too wide.
+    // From one kink to the next: the same panel for every ray and lamp. Without points if it would
+    // be too wide.
     struct KinkPanel {
         double room_rad = 0.0;
         std::vector<Point> points{};
@@ -164,21 +164,21 @@ class Veil {
     std::vector<Phase> phases_;         // by scatterer
     std::vector<double> kinks_rad_;     // of all phase functions, as phi, ascending
     std::vector<KinkPanel> panels_;     // by the kink where they begin
-    double longest_m_ = 0.0;            // path beyond which nothing is left
+    double longest_m_ = 0.0;            // path beyond which no light is left
     std::vector<Rule> rules_;           // by number of points
 };
 
-// How far kVeilPoints are from twice as many, relative to the veil, or to kDimVeilShare of the
-// brightest where it is less: the largest of a coarse grid of the image, at the ends and in the
-// middle of the camera's range. Measured, no bound. 0 in water that does not scatter.
+// The difference between kVeilPoints and twice as many, relative to the veil, or to kDimVeilShare
+// of the brightest if it is less: the largest on a coarse grid of the image, at the ends and in the
+// middle of the camera's range. Measured, not a bound. 0 in water that does not scatter.
 inline constexpr double kDimVeilShare = 1e-6;
 [[nodiscard]] double veil_error(const Rig& rig, unsigned points = kVeilPoints);
 
-// kVeilMapPoints where these are right to the error, as veil_error() measures it; else kVeilPoints.
+// kVeilMapPoints if these are accurate to the error, as measured by veil_error(); else kVeilPoints.
 [[nodiscard]] unsigned veil_points(const Rig& rig, double error);
 
-// The camera's ray of a pixel's centre in water, and how far it goes to the bare floor; infinite
-// when it does not come down on it.
+// The camera's ray in water for a pixel's centre, and its distance to the bare floor; infinite if
+// it does not reach it.
 struct VeilSight {
     WaterRay ray;
     double length_m = 0.0;

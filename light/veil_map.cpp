@@ -20,12 +20,12 @@ namespace {
 
 constexpr double kVeilGridShare = 0.1;
 constexpr double kVeilTableShare = 0.5;
-// Shares of the tolerance: at edges a polynomial is off by some times as much elsewhere, and those
-// of several parts add up.
+// Shares of the tolerance: at edges a polynomial is off by a few times its error elsewhere, and the
+// errors of several parts add up.
 constexpr double kOffBetween = 0.1;
 constexpr double kLastDegrees = 0.3;
 
-// Of the wavelengths that are scattered.
+// The wavelengths that are scattered.
 double least_loss_per_m(const Rig& rig) {
     double least = std::numeric_limits<double>::infinity();
     for (const double nm : union_of_knots(rig.water.curves(), rig.camera.range)) {
@@ -52,7 +52,7 @@ PathRange veil_paths(const Rig& rig, const PathRange& direct) {
     }
     const double dark_m = kVeilDepth / least_per_m;
     if (direct.has_horizon || direct.longest_m == 0.0) paths.longest_m = dark_m;
-    // However deep the water's black: a table of no more than that depth.
+    // However deep the black water: a table to that depth only.
     paths.longest_m = std::clamp(
         paths.longest_m, paths.shortest_m + std::min(kSome_m, dark_m), paths.shortest_m + dark_m);
     return paths;
@@ -164,7 +164,7 @@ void VeilMap::add(const VeilNodes& nodes, std::size_t strobe, std::size_t ray, S
     std::array<std::array<float, kTableLanes>, kVeilPlanes / kChannels> lanes{};
     for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
         const double place = (nodes.path_m[n] - steps_.first_m) * steps_.steps_per_m;
-        // Rounding may lead out of it a little. Beyond the horizon's end nothing is left.
+        // Rounding may leave the range slightly. Past the horizon's end nothing is left.
         if (place > steps_.count + 0.01) continue;
         const int step = std::clamp(static_cast<int>(place), 0, steps_.count - 1);
         const auto t = static_cast<float>(place - step);
@@ -184,7 +184,7 @@ void VeilMap::add(const VeilNodes& nodes, std::size_t strobe, std::size_t ray, S
             rig_.strobes[strobe].power * static_cast<double>(lanes[c / kChannels][c % kChannels]);
 }
 
-// As tile_image.h asks for it. Pieces are parts of beams.
+// The class that tile_image.h requires. Pieces are parts of beams.
 class VeilTiles : public TileLight {
   public:
     using Piece = std::size_t;
@@ -252,7 +252,7 @@ class VeilTiles : public TileLight {
     [[nodiscard]] bool is_right(const Found& found, const TileCheck& check) const {
         for (std::size_t c = 0; c < map_.planes_; ++c) {
             const double most = tolerance_ * check.signals[c];
-            if (!(std::abs(check.told[c] - found.signals[c]) <= kOffBetween * most &&
+            if (!(std::abs(check.interpolated[c] - found.signals[c]) <= kOffBetween * most &&
                   check.last_degrees[c] <= kLastDegrees * most))
                 return false;
         }

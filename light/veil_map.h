@@ -40,11 +40,11 @@
 
 namespace aphotic {
 
-// Smaller ones in images that have fewer than four along their longer side, down to the least: each
-// tile is one thread's.
+// Smaller in images with fewer than four along their longer side, down to the least: each tile has
+// one thread.
 inline constexpr int kVeilTile_px = 256;
 inline constexpr int kLeastVeilTile_px = 32;
-// What maps and renders are off by at most, of the signal.
+// The largest error of maps and renders, relative to the signal.
 inline constexpr double kVeilOfSignal = 1e-4;
 inline constexpr std::size_t kVeilPlanes = kTilePlanes;  // of one map, at most
 
@@ -52,10 +52,10 @@ using VeilGrid = std::vector<WeightedWavelength>;
 
 class VeilMap {
   public:
-    // Of water that scatters. direct: the floor's light's. error: relative, of the spectral
-    // integral and its table. points: of a panel (light/veil.h). The planes are R, G and B, and
-    // beside them A of light/veil.h at wavelengths, which share their nodes: none behind a port,
-    // where each has a ray of its own. Without signals, A alone, along rays of one wavelength.
+    // For water that scatters. direct: the floor light's. error: relative, of the spectral integral
+    // and its table. points: per panel (light/veil.h). The planes are R, G and B, followed by A of
+    // light/veil.h at wavelengths, which share their nodes: none behind a port, where each has its
+    // own ray. Without signals, only A, along rays of one wavelength.
     VeilMap(const Rig& rig,
             const PathRange& direct,
             double error,
@@ -65,14 +65,14 @@ class VeilMap {
 
     [[nodiscard]] std::size_t planes() const { return planes_; }
 
-    // By plane, along the rays of a place of the image, as far as the floor or as they are told.
+    // By plane, along the rays of a place of the image, to the floor or to the given distance.
     using Signal = PlaceSignals;
     [[nodiscard]] Signal at(const PlaceRays& rays,
                             VeilNodes& nodes,
                             std::optional<double> length_m = {}) const;
 
-    // The planes of some rows as a camera of these rays has them. tolerance: of the sum with the
-    // floor's light, of the veil alone where there is none.
+    // The planes of some rows for a camera with these rays. tolerance: of the sum with the floor's
+    // light, or of the veil alone if there is none.
     void paint(const Sled& sled,
                const CameraRays& rays,
                const FloorLight* floor,

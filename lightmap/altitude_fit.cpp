@@ -37,7 +37,7 @@ AltitudeFitter::AltitudeFitter(std::vector<double> altitude_m)
     const double fastest_per_m = std::min(kFastest / span_m, kMostExponent / altitude_m_.back());
     if (fastest_per_m <= slowest_per_m) {
         throw InputError(
-            "a fit over altitude: found altitudes from {:.6g} to {:.6g} m; allowed: over "
+            "a fit over altitude: found altitudes from {:.6g} to {:.6g} m; allowed: a span of "
             "{:.3g} m or more",
             altitude_m_.front(),
             altitude_m_.back(),
@@ -78,7 +78,7 @@ AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
     struct Line {
         double a;  // of exp(b (h - at))
         double c;
-        double squares;  // that it leaves, less those of the signal
+        double squares;  // that it leaves, less the squares of the signal
     };
     const auto line_over = [&](const Rate& rate) {
         const double part = product(rate.shape, signal);

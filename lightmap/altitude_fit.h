@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of one pixel over altitude as correctors of surveys take it:
+// The light of one pixel over altitude, in the form that survey correctors use:
 //
 //   S(h) ~ a exp(b h) + c
 //
 // h  altitude [m]      a, c  in the unit of S      b  1/m
 //
-// by least squares under a >= 0, b <= 0, 0 <= c <= the least S, for a corrector divides by the fit,
-// which must not cross zero. For a given b the problem is that of a straight line over exp(b h): c
-// is cut to its range and a follows, which is exact, as the squares are convex. So only b is
-// searched: first over kRates rates, even in ratio from kSlowest to kFastest over the span of
-// altitudes, but no faster than kMostExponent over the last altitude, from where on a and exp(b h)
-// would not be floats any more; then by golden section between the neighbours of the best. Of all
-// rates that is the least, unless the residual has several minima between two rates. Light that
-// rises with altitude is its mean, at b = 0.
+// by least squares with a >= 0, b <= 0, 0 <= c <= the least S, since a corrector divides by the
+// fit, which must not cross zero. For a given b the problem is a straight line over exp(b h): c is
+// cut to its range and a follows, which is exact, since the squares are convex. So only b is
+// searched: first over kRates rates, in even ratios from kSlowest to kFastest over the span of
+// altitudes, but no faster than kMostExponent over the last altitude, beyond which a and exp(b h)
+// would no longer be floats; then by golden section between the neighbours of the best. The result
+// is the best of all rates, unless the residual has several minima between two rates. Light that
+// increases with altitude is fitted by its mean, at b = 0.
 //
 // residual  root of the mean square of what the fit leaves, over the mean of S
 #pragma once
@@ -33,8 +33,8 @@ struct AltitudeFit {
 
 class AltitudeFitter {
   public:
-    // At least four altitudes, increasing, over a share of kSlowest / kMostExponent of the last at
-    // least.
+    // At least four altitudes, increasing, spanning at least a share of kSlowest / kMostExponent of
+    // the last.
     explicit AltitudeFitter(std::vector<double> altitude_m);
 
     [[nodiscard]] AltitudeFit fit(std::span<const double> signal) const;
@@ -45,7 +45,7 @@ class AltitudeFitter {
     static constexpr double kMostExponent = 80.0;
 
   private:
-    // exp(b (h - the first h)) = mean + length shape, the shape of mean 0 and length 1.
+    // exp(b (h - the first h)) = mean + length shape, with shape of mean 0 and length 1.
     struct Rate {
         double b_per_m;
         double mean = 0.0;

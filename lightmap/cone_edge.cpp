@@ -18,11 +18,10 @@ using Eigen::Vector3d;
 
 constexpr int kTile_px = 32;
 
-// An emitter's rim at its corners and half way between them, and its middle; a point's own
-// position.
+// An emitter's rim at its corners and halfway between them, and its middle; a point's own position.
 std::vector<Vector3d> places_of(const Strobe& strobe) {
     if (!strobe.emitter) return {strobe.position_m};
-    // The centres of a grid of three by three cells lie two thirds of the way to the rim.
+    // The centres of a grid of three by three cells are two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
     std::vector<Vector3d> places_m;
     for (const Vector3d& centre : lamp_positions_m(strobe, {.across = 3, .along = 3}))
@@ -41,8 +40,8 @@ void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
 
 }  // namespace
 
-// Pixels of the image, and the one after each row and column of them, so that neighbours in two
-// tiles are compared in one.
+// Pixels of the image, and the one after each row and column, so that neighbours in two tiles are
+// compared in one.
 struct ConeEdges::Tile {
     int column;
     int row;
@@ -88,7 +87,7 @@ void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_
     }
     if (!has_horizon && near.empty()) return;
 
-    // By pixel, how many of the rays and places have its point within a thing that has an edge: the
+    // By pixel, how many of the rays and places have its point within something with an edge: the
     // floor itself, then each of the edges.
     const std::size_t things = near.size() + 1;
     std::vector<std::size_t> counts(things * size_of(tile.width) * size_of(tile.height));
@@ -154,7 +153,7 @@ void spread(std::vector<std::uint8_t>& mask, int width_px, int within_px) {
         take_in(before.data(), mask.size() - width, mask.data() + width);
         take_in(before.data() + width, mask.size() - width, mask.data());
         before = mask;
-        // By pointers: in rows of one pixel, the last has nothing to its right.
+        // By pointers, since in rows of one pixel the last has nothing to its right.
         for (std::size_t start = 0; start < mask.size(); start += width) {
             const std::uint8_t* const from = before.data() + start;
             std::uint8_t* const to = mask.data() + start;

@@ -20,19 +20,19 @@ namespace aphotic {
 namespace {
 
 constexpr double kSearchError = 1e-4;  // of the signal: the figures are no finer
-constexpr double kForbidden = -1e3;    // below every value of a place that is allowed
-// What a share of a figure that should be kept costs: more than a design gains by it.
+constexpr double kForbidden = -1e3;    // below every value of an allowed place
+// The penalty for losing a share of a figure to be kept: more than a design gains by it.
 constexpr double kPenalty = 20.0;
 constexpr std::size_t kCandidatesOfRoom = 12;  // to be judged
-constexpr std::size_t kFewHold = 8;            // of which so many are enough
-// Small images and large ones differ by about so much: what is only just kept on one may not be
+constexpr std::size_t kFewHold = 8;            // of which this many are enough
+// Small images and large ones differ by about this much: a figure only just kept on one may not be
 // on the other.
 constexpr double kRoomToJudge = 1.003;
 constexpr std::size_t kMostOnFront = 9;
 
 // Shares of the evaluations.
 constexpr double kGlobalShare = 0.1;
-constexpr int kPopulations = 4;  // one alone now and then dies out on a lesser hill
+constexpr int kPopulations = 4;  // a single one occasionally ends on a lower hill
 constexpr double kFromStartShare = 0.15;
 constexpr double kRestartShare = 0.05;
 constexpr int kRestarts = 4;
@@ -72,7 +72,7 @@ LightFigures worst_of_all(const std::vector<LightFigures>& figures) {
     return worst;
 }
 
-// The light of any places in the space, as the search sees it.
+// The light of any places in the space, as the search computes it.
 class SearchedLight {
   public:
     SearchedLight(const Rig& rig, const DesignSpace& space, const DesignRequest& request)
@@ -118,7 +118,7 @@ bool is_as_good(const LightFigures& a, const LightFigures& b) {
            a.coverage >= b.coverage;
 }
 
-// Of all that was seen, those that nothing seen is better than.
+// The Pareto-optimal designs among all that were seen.
 class Archive {
   public:
     void take(std::span<const double> point, const LightFigures& figures) {
@@ -140,7 +140,7 @@ double goal_of(DesignGoal goal, const LightFigures& figures) {
     return goal == DesignGoal::Coverage ? figures.coverage : figures.evenness;
 }
 
-// What a design must have of each figure at least.
+// The least that a design must have of each figure.
 LightFigures least_of(const DesignRequest& request, const LightFigures& start) {
     LightFigures least{.evenness = request.keep * start.evenness,
                        .coverage = request.keep * start.coverage,
@@ -175,8 +175,8 @@ class DesignSearch {
           start_(light.of(space.places_at(space.start()))) {
         if (start_.evenness <= 0.0) {
             throw InputError(
-                "found pixels without light, or without floor, in a pose of the "
-                "envelope; allowed: a start that lights the whole image in all");
+                "found pixels without light, or without floor, in a pose of the envelope; allowed: "
+                "a start that lights the whole image in all poses");
         }
         archive_.take(space.start(), start_);
     }
@@ -187,7 +187,7 @@ class DesignSearch {
         for (int population = 0; population < kPopulations; ++population)
             search(SearchWay::Global, space_.start(), kGlobalShare, goal);
         search(SearchWay::Local, space_.start(), kFromStartShare, goal);
-        // Again from the best: a simplex that has shrunk in a crease is given its size anew.
+        // Again from the best: a simplex that has shrunk in a crease gets its initial size again.
         for (int again = 0; again < kRestarts; ++again)
             search(SearchWay::Local, best_by(goal).point, kRestartShare, goal);
         fill_front();
@@ -204,7 +204,7 @@ class DesignSearch {
     [[nodiscard]] double value(DesignGoal goal,
                                const LightFigures& figures,
                                const LightFigures& least) const {
-        constexpr double kTie = 1e-3;  // coverage has steps: on one, the more even light
+        constexpr double kTie = 1e-3;  // coverage has steps: on one, prefer the more even light
         if (figures.evenness <= 0.0 || figures.coverage <= 0.0) return 0.5 * kForbidden;
         const double missing = log_missing(figures.evenness, least.evenness) +
                                log_missing(figures.coverage, least.coverage) +
@@ -231,13 +231,13 @@ class DesignSearch {
         maximise(way, from, {.evaluations = evaluations, .seed = request_.seed + searches_++}, ask);
     }
 
-    // A copy: the archive grows.
+    // A copy, since the archive grows.
     [[nodiscard]] Candidate best_by(const Value& value) const {
         return *std::ranges::max_element(
             archive_.kept(), {}, [&](const Candidate& c) { return value(c.figures); });
     }
 
-    // Its two ends, and between them the most even light of a signal.
+    // Its two ends, and between them the most even light for a signal.
     void fill_front() {
         constexpr std::array kBetween{0.25, 0.5, 0.75};
         const double share = kFrontShare / (2.0 + kBetween.size());
@@ -262,7 +262,7 @@ class DesignSearch {
     std::uint64_t searches_ = 0;
 };
 
-// What a user gets.
+// The result that a user gets.
 class DesignJudge {
   public:
     DesignJudge(const DesignSpace& space, const DesignRequest& request)
@@ -290,8 +290,8 @@ class DesignJudge {
     std::vector<Sled> poses_;
 };
 
-// Those that keep what is to be kept, the best first. Some have room to spare, for the best have
-// none, and the judge may find them wanting.
+// Those that keep the required figures, the best first. Some have margin, since the best have none
+// and may fail the judgement.
 std::vector<Candidate> best_of(std::vector<Candidate> candidates,
                                const DesignRequest& request,
                                const LightFigures& start) {
@@ -327,7 +327,7 @@ bool is_alike(const LightFigures& a, const LightFigures& b) {
            std::abs(a.signal_to_noise / b.signal_to_noise - 1.0) < kAlike;
 }
 
-// Of evenness and signal alone, spread over the signal.
+// For evenness and signal only, spread over the signal.
 std::vector<Candidate> front_of(std::vector<Candidate> all, double least_coverage) {
     std::vector<Candidate> front;
     std::erase_if(all, [&](const Candidate& c) { return c.figures.coverage < least_coverage; });
@@ -379,8 +379,8 @@ Rig with_longer_side(Rig rig, int longer_px) {
     Camera& camera = rig.camera;
     const int longest = std::max(camera.width_px, camera.height_px);
     if (longest <= longer_px) return rig;
-    // Pixels are square, and both sides whole: of sizes about the one that is asked for, that whose
-    // view is nearest.
+    // Pixels are square, and both sides whole: among sizes near the requested one, that whose view
+    // is nearest.
     constexpr double kAbout = 1.25;
     const double full_width = camera.width_px;
     const double full_height = camera.height_px;

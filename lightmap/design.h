@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Better places for a rig's strobes: a search over a space (design_space.h) for the evenness, the
-// signal to noise or the coverage of the floor's light (evenness.h), the worst of all poses of an
-// envelope.
+// Better places for a rig's strobes: a search over a space (design_space.h) that improves the
+// evenness, the signal to noise or the coverage of the floor's light (evenness.h), for the worst
+// pose of an envelope.
 //
 //   goal       largest              at least keep times the start's
 //   Evenness   U0                   signal to noise, coverage
 //   Signal     signal to noise      U0, coverage
 //   Coverage   coverage             U0, signal to noise
 //
-// Coverage is kept since U0 is blind to a small bright spot, which hardly moves the mean.
+// Coverage is kept because U0 is blind to a small bright spot, which hardly moves the mean.
 //
-// The search (maximise.h) looks at a small image, kSearched_px along its longer side, of few poses:
-// the ends of each range that is given, and its middle. In water that scatters the signal to noise
-// is that of kVeilSearched_px. Every design it looks at counts, also those found on the way to
-// other goals: none of these is better in one figure and as good in the others.
+// The search (maximise.h) uses a small image, kSearched_px along its longer side, and few poses:
+// the ends of each given range, and its middle. In water that scatters the signal to noise is that
+// of kVeilSearched_px. Every design it evaluates counts, also those found on the way to other
+// goals: a candidate is one that no other equals or beats in all figures.
 //
-// Judged is what a user gets: the rig's text with its rounded numbers, read again, on an image of
-// up to kJudged_px, at the ends and the middle of each range, in all combinations. The best of the
-// search's candidates by that judgement is the design, and where none is better than the start and
-// keeps what is to be kept, the start is: a design is never worse than its start.
+// Designs are judged as the user gets them: the rig's text with its rounded numbers, read again, on
+// an image of up to kJudged_px, at the ends and the middle of each range, in all combinations. The
+// best of the search's candidates by that judgement is the design; if none is better than the start
+// and keeps the required figures, it is the start: a design is never worse than its start.
 //
-// The front is the trade of evenness against signal: designs of which none is better in both, and
-// that keep the coverage.
+// The front is the trade of evenness against signal: designs that no other beats in both, and that
+// keep the coverage.
 //
-// Limits: a search is no proof that nothing is better; between the poses judged, figures may be
+// Limits: a search does not prove that nothing is better; between the poses judged, figures may be
 // worse than at them. The same request gives the same answer, whatever the number of threads.
 #pragma once
 
@@ -89,18 +89,18 @@ struct Design {
 
 struct DesignResult {
     Design start;
-    Design best;  // the start itself where nothing better was found
+    Design best;  // the start itself if nothing better was found
     bool is_better = false;
     std::vector<Design> front{};  // by signal, the least first
     int evaluations = 0;
     std::size_t numbers = 0;  // that were free
 };
 
-// Of a rig of the bare floor. Throws InputError where the start is not allowed, or leaves pixels
+// For a rig with the bare floor. Throws InputError if the start is not allowed, or leaves pixels
 // without light.
 [[nodiscard]] DesignResult design(const RigText& text, const DesignRequest& request);
 
-// The rig with an image so small, of the same view; as it is where it is smaller.
+// The rig with an image this small, with the same view; unchanged if it is smaller.
 [[nodiscard]] Rig with_longer_side(Rig rig, int longer_px);
 
 }  // namespace aphotic

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A design in a folder: designed.toml, the rig with its strobes moved and all else as its author
-// wrote it, the files that the rig names beside it, design.json with every number, and report.html
-// to look at (design_page.h).
+// wrote it, with the files that it names, design.json with every number, and report.html
+// (design_page.h).
 #pragma once
 
 #include "lightmap/design.h"
@@ -18,12 +18,12 @@ inline constexpr const char* kDesignedRig = "designed.toml";
 inline constexpr const char* kDesignNumbers = "design.json";
 inline constexpr const char* kDesignPage = "report.html";
 
-// Of a rig that was read; the same request gives the same bytes.
+// For a rig that was read; the same request gives the same bytes.
 [[nodiscard]] nlohmann::ordered_json design_json(const Rig& rig,
                                                  const DesignRequest& request,
                                                  const DesignResult& result);
 
-// The folder is there. Files are whole or not there; the rig comes last.
+// The folder exists. Files are complete or absent; the rig comes last.
 void write_design(const RigText& text,
                   const DesignRequest& request,
                   const DesignResult& result,

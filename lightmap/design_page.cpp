@@ -63,14 +63,14 @@ PageTable figures(const DesignRequest& request, const DesignResult& result) {
     add(fmt::format("coverage, share of pixels over {} of the brightest", plain(request.level)),
         start.coverage,
         best.coverage);
-    add("signal to noise of the worst pixel, the start’s being 1",
+    add("signal to noise of the worst pixel (start = 1)",
         1.0,
         best.signal_to_noise / start.signal_to_noise);
     return table;
 }
 
-// Bright pixels over the mean in steps of a tenth, whose borders are contours: of the channel that
-// is the least even.
+// Bright pixels over the mean in steps of a tenth, whose borders are contours: for the least even
+// channel.
 std::string steps_png(const Lightmap& map) {
     constexpr double kSteps = 10.0;   // of the mean
     constexpr double kWhitest = 2.0;  // times the mean
@@ -121,7 +121,7 @@ PageFigures pair_of(std::string before, std::string after, int width_px, int hei
 }
 
 std::vector<PagePart> light(const Rig& rig, const DesignResult& result) {
-    // The start's own worst pose, of both.
+    // The start's own worst pose, for both.
     const auto worst = std::ranges::min_element(
         result.start.poses, {}, [](const JudgedPose& pose) { return pose.figures.evenness; });
     const Lightmap before = shown_map(rig, result.start, worst->sled);
@@ -190,8 +190,8 @@ std::vector<PagePart> front(const DesignResult& result) {
                                  dots(x, y, kFrontTone) + dots(start_x, start_y, kStartTone) +
                                  dots(best_x, best_y, kBestTone);
     return {
-        "Designs of which none is better in both: more even light, or more of it. --keep chooses "
-        "among them.",
+        "Designs that no other beats in both: more even light, or more of it. --keep chooses among "
+        "them.",
         PageLegend{dot_key(kFrontTone, "front"),
                    dot_key(kStartTone, "start"),
                    dot_key(kBestTone, "design")},
@@ -199,7 +199,7 @@ std::vector<PagePart> front(const DesignResult& result) {
             svg_drawing("trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)}};
 }
 
-// From above, forward up: the strobes, and a stroke to where each points halfway to the floor.
+// From above, forward up: the strobes, and a line along each aim, halfway to the floor.
 std::string plan_of(const Rig& rig, const DesignResult& result) {
     constexpr double kSide = 520.0;
     constexpr double kRoom = 40.0;
@@ -270,7 +270,7 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
                                 "position (m)",
                                 "direction at start",
                                 "direction",
-                                "power of the start’s"}};
+                                "power (start = 1)"}};
     const auto vector = [](const Eigen::Vector3d& v) {
         return fmt::format("{:.3f}, {:.3f}, {:.3f}", v.x(), v.y(), v.z());
     };
@@ -286,9 +286,8 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
                        was.power > 0.0 ? fmt::format("{:.3f}", is.power / was.power) : "none"}});
     }
     return {std::move(table),
-            "From above, forward up: the start in red, the design in green, each with a line to "
-            "where it points, as long as half the altitude; dashed, what the camera sees of the "
-            "floor.",
+            "From above, forward up: the start in red, the design in green, each with a line along "
+            "its aim, half the altitude long; dashed, what the camera sees of the floor.",
             PagePlot{plan_of(rig, result)}};
 }
 
@@ -322,7 +321,7 @@ std::string design_html(const Rig& rig, const DesignRequest& request, const Desi
          .is_good = result.is_better,
          .headline = headline(result),
          .said = {fmt::format(
-             "The worst of {}; {}, {} looked at.",
+             "The worst of {}; {}, {} evaluated.",
              grouped_count(result.best.poses.size(), "pose"),
              grouped_count(result.numbers, "free number"),
              grouped_count(static_cast<std::size_t>(result.evaluations), "design"))},

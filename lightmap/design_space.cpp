@@ -28,7 +28,7 @@ using Eigen::Vector3d;
 
 constexpr std::string_view kStrobes = "strobe.";
 
-// Longer endings first, for one may be the other's end.
+// Longer endings first, since one may be the other's end.
 constexpr std::array<std::string_view, 4> kKeys{"aim.tilt_deg", "position_m", "aim", "power"};
 
 std::vector<std::string> split_at(std::string_view text, char mark) {
@@ -46,7 +46,7 @@ std::optional<double> metres_of(std::string_view text) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// One number, or two with a colon between, the smaller first.
+// One number, or two separated by a colon, the smaller first.
 std::optional<std::array<double, 2>> side_of(std::string_view text) {
     const std::vector<std::string> ends = split_at(text, ':');
     const auto first = metres_of(ends.front());
@@ -75,7 +75,7 @@ double between(double least, double most, double share) {
     return least + share * (most - least);
 }
 
-// The corners of a lamp, or its place.
+// The corners of a lamp, or its position.
 std::vector<Vector3d> ends_of(const Strobe& strobe) {
     if (!strobe.emitter) return {strobe.position_m};
     const BeamFrame frame = frame_about(strobe.axis);
@@ -102,7 +102,7 @@ std::vector<double> numbers_of(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-// Times the power or flux that the rig says, in the same words.
+// Times the power or flux of the rig, in the same key.
 void brighten(RigText& text, const std::string& strobe, double factor) {
     static constexpr std::array kPowers{"luminous_flux_lm", "radiant_flux_w", "energy_j", "power"};
     const auto* said =
@@ -232,8 +232,7 @@ void DesignSpace::set_powers() {
         const double flux = strobe.power * flux_per_power_[s];
         if (flux <= 0.0) {
             throw InputError(
-                "strobe.{}.power: found a strobe without light; allowed: one that "
-                "has some to share",
+                "strobe.{}.power: found a strobe without light; allowed: one with light to share",
                 strobe.name);
         }
         shared_flux_ += flux;
@@ -243,8 +242,8 @@ void DesignSpace::set_powers() {
     }
     if (count == 1) {
         throw InputError(
-            "--vary: found the power of one strobe; allowed: of two or more, which "
-            "share the light that they have together");
+            "--vary: found the power of one strobe; allowed: the power of two or more, which share "
+            "their total light");
     }
     if (count > 0) least_share_ = std::min(kLeastFluxShare, least / most);
 }

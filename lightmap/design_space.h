@@ -12,14 +12,14 @@
 //   axis = unit(axis_0 + tan(a) e_1 + tan(b) e_2)
 //
 // with e_1, e_2 across axis_0 and each other: at a = b = 0 it is the axis of the start, and it has
-// no pole. A strobe whose rig says an aim towards the camera's axis goes on pointing there as it
-// moves, as the same words say.
+// no pole. A strobe whose rig aims it towards the camera's axis keeps pointing there as it moves,
+// since its aim is relative.
 //
-// Powers share the flux (power times the integral of the lamp's table) that they begin with: light
-// is moved, not added. None falls below kLeastFluxShare of the strongest, or its own share of it.
+// Powers share their initial flux (power times the integral of the lamp's table): light is moved,
+// not added. None falls below kLeastFluxShare of the strongest, or its own share of it.
 //
-// Allowed is a place where every lamp is over the floor by kRoomOverFloor of the altitude at least,
-// in every pose, and out of the camera's view, made kRoomAboutView times as large each way.
+// Allowed is a place where every lamp is above the floor by at least kRoomOverFloor of the
+// altitude, in every pose, and outside the camera's view, enlarged kRoomAboutView times each way.
 #pragma once
 
 #include "light/path_range.h"
@@ -49,21 +49,22 @@ struct DesignFreedom {
 
 class DesignSpace {
   public:
-    // Throws InputError, which names the key or box, for what the rig does not have or cannot have.
+    // Throws InputError, which names the key or box, for anything that the rig does not have or
+    // cannot have.
     DesignSpace(const RigText& text, const DesignFreedom& freedom, std::vector<Sled> poses);
 
     // The free numbers, each from 0 to 1.
     [[nodiscard]] std::size_t size() const { return start_.size(); }
     [[nodiscard]] const std::vector<double>& start() const { return start_; }
 
-    // By strobe, those that are not free among them.
+    // By strobe, including those that are not free.
     [[nodiscard]] std::vector<StrobePlace> places_at(std::span<const double> point) const;
     [[nodiscard]] bool allows(const std::vector<StrobePlace>& places) const;
-    // The same in words, for people; none: allowed.
+    // The reason in words, for people; empty: allowed.
     [[nodiscard]] std::string why_not(const std::vector<StrobePlace>& places) const;
 
-    // The rig's text with the strobes there. Numbers are rounded: to so many places of metres,
-    // within the boxes, of directions and of degrees, and to so many digits of powers.
+    // The rig's text with the strobes there. Numbers are rounded: to a number of decimals for
+    // metres, within the boxes, for directions and degrees, and to a number of digits for powers.
     static constexpr int kPlacesOfMetre = 4;
     static constexpr int kPlacesOfDirection = 5;
     static constexpr int kPlacesOfDegree = 2;

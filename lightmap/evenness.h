@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How good the light of an image is, in figures that a designer can compare.
+// The quality of an image's light, in figures that a designer can compare.
 //
 //   evenness        U0 = least / mean      of the floor's light over the image; what lighting
 //                                          standards call overall uniformity (CIE, IES)
@@ -11,14 +11,14 @@
 // g  the floor's light at a pixel, vignetting included: what the camera gets of it
 // v  the veil's: what the water scatters into the view
 //
-// The noise is that of photons alone, whose variance is their number, and veil has noise and tells
-// nothing: so the ratio goes by the root of the light. It is in units of the root of the signal's,
-// and has a meaning beside another of the same camera alone. Read noise is left out.
+// The noise is only the photons', whose variance is their number; veil adds noise and no
+// information, so the ratio goes with the root of the light. It is in units of the root of the
+// signal's, and meaningful only relative to another of the same camera. Read noise is omitted.
 //
-// Of an image: the worst of its channels. A channel that sees no light at all is left out; where
-// none sees any, all figures are 0. In even light U0, Ud and coverage are 1. Under one lamp that
-// shines alike in all directions, beside the pupil at height h in clear water, light falls as
-// cos^3(theta): Ud is cos^3 of the corners'.
+// For an image: the worst of its channels. A channel that sees no light at all is ignored; if none
+// sees any, all figures are 0. In even light U0, Ud and coverage are 1. Under one isotropic lamp
+// beside the pupil at height h in clear water, light falls as cos^3(theta): Ud is cos^3 of the
+// corners'.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -37,7 +37,7 @@ struct LightFigures {
 // The worse of each.
 [[nodiscard]] LightFigures worst_of(const LightFigures& a, const LightFigures& b);
 
-// Of one channel. veil: empty, or as many as the floor's.
+// For one channel. veil: empty, or as many as the floor's.
 [[nodiscard]] LightFigures figures_of_plane(std::span<const float> floor,
                                             std::span<const float> veil,
                                             double level);

@@ -31,7 +31,7 @@ namespace aphotic {
 namespace {
 
 void require_bare_floor(const Rig& rig) {
-    constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
+    constexpr auto kAllowed = "allowed: the bare floor, since a lightmap shows nothing else";
     if (!rig.objects.empty()) {
         throw InputError("found the object '{}'; {}", rig.objects.front().name, kAllowed);
     }
@@ -40,8 +40,8 @@ void require_bare_floor(const Rig& rig) {
     }
 }
 
-// Maps are of floats. What a strobe's light is made of has room below the largest float for what
-// is close, and above the least for what is dark.
+// Maps are floats. The factors of a strobe's light stay below the largest float with room for close
+// light, and above the least with room for dark light.
 void require_float_scale(const Rig& rig) {
     constexpr double kLeast = 1e-28;
     constexpr double kMost = 1e28;
@@ -66,7 +66,7 @@ void require_float_scale(const Rig& rig) {
             throw InputError(fmt::format(
                 "strobe '{}', {}: found up to {:.3g} of lamp spectrum times reflectance times "
                 "response, and {:.3g} of power times beam; allowed: each, and their product, from "
-                "{:g} to {:g}, for maps are of 32-bit floats",
+                "{:g} to {:g}, since maps hold 32-bit floats",
                 strobe.name,
                 kChannelNames.at(static_cast<std::size_t>(c)),
                 signal,
@@ -77,7 +77,7 @@ void require_float_scale(const Rig& rig) {
     }
 }
 
-// Light that has gone from the shortest path to the longest, and as wide, is all but gone.
+// Light that has gone from the shortest path to the longest, and spread as much, is almost gone.
 bool ends_in_darkness(const Water& water, const PathRange& paths) {
     const double K_per_m = water.least_attenuation_per_m();
     constexpr double kRounding = 1.1;
@@ -151,7 +151,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     require_float_scale(rig);
     direct_ = paths ? *paths : path_range(rig);
     paths_ = direct_;
-    // The rig's own end where the floor does, or else where its light does.
+    // The rig's own end where the floor ends, or else where its light ends.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
     table_ = signal_table(rig_, paths_, options_.error);
@@ -183,8 +183,7 @@ void LightmapMaker::place(const std::vector<StrobePlace>& by_strobe) {
 void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
     throw InputError(
-        fmt::format("{}: the image sees paths {} "
-                    "than the tables serve; allowed: from {} to {} m",
+        fmt::format("{}: the image sees paths {} than the tables cover; allowed: from {} to {} m",
                     in_words(sled),
                     is_before ? "shorter" : "longer",
                     at_least(paths_.shortest_m, 6),
@@ -231,7 +230,7 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
 
 std::vector<double> LightmapMaker::cones(const Sled& sled) const {
     const FloorLight light(rig_, sled, table_, rays_);
-    // Whole numbers below 2^40, whose sums are exact and seldom the same by chance.
+    // Whole numbers below 2^40, whose sums are exact and rarely coincide.
     std::mt19937_64 engine(1);
     constexpr std::uint64_t kShift = 24;
     std::vector<BeamEdges> edges;

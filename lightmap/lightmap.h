@@ -2,13 +2,13 @@
 //
 // The signal of the rig's camera on its bare flat floor, at the camera's pace:
 // light/floor_light.h's sum at every pixel, by tiles of the image (light/floor_image.h). Once per
-// water the signal over the path's length is tabulated (light/signal_table.h); then a map of any
-// altitude and attitude is geometry and a look-up where the light is smooth at few places, and in
-// between a polynomial.
+// water the signal over path length is tabulated (light/signal_table.h); a map for any altitude and
+// attitude is then geometry and table look-ups at few places where the light is smooth, with a
+// polynomial between them.
 //
-// An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
-// the map is black; and so it is beyond the longest path when the paths have a horizon, that is
-// when all that lies beyond is darker than kDarkShare of the brightest.
+// An emitter with a size is the grid of lamps of rig/geometry.h. Where the image sees no floor, the
+// map is black; so it is beyond the longest path if the paths have a horizon, that is if everything
+// beyond is darker than kDarkShare of the brightest.
 #pragma once
 
 #include "light/floor_light.h"
@@ -30,19 +30,20 @@
 namespace aphotic {
 
 struct LightmapOptions {
-    // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
+    // Relative, of the spectral integral and of its table. Rounding of floats adds to it, and
     // behind a port the interpolation over the index.
     double error = 1e-5;
     int threads = 1;       // changes no bit
     bool has_veil = true;  // where the water scatters
-    // What a veil may be off by, of the signal: as measured, and the rule along the ray adds to it.
+    // The veil's largest error, relative to the signal: as measured; the rule along the ray adds to
+    // it.
     double veil_tolerance = kVeilOfSignal;
 };
 
-// Of the rule along a ray, whose error is to be little beside the veil's own.
+// For the rule along a ray, whose error should be small compared with the veil's own.
 [[nodiscard]] unsigned map_veil_points(const Rig& rig, const LightmapOptions& options);
 
-// How far a signal of a map may be from the exact one of the same lamps, relative, off the beams'
+// The relative difference of a map's signal from the exact one of the same lamps, off the beams'
 // edges.
 struct MapPromise {
     double error = 0.0;
@@ -50,13 +51,13 @@ struct MapPromise {
     // a veil.
     bool is_bounded = true;
     bool has_veil = false;  // it is of the sum
-    // Emitters of a size are their grids of lamps, and penumbras have as many steps.
+    // Emitters with a size are their grids of lamps, and penumbrae have as many steps.
     bool is_of_lamp_grids = false;
 };
 
-// The error that is asked for, that of tiles and the rounding of floats, that of a sum of a dozen;
-// behind a port besides 1e-4. Of the sum of both in water that
-// scatters: the veil's tolerance and veil_error() (light/veil.h) on top, measured and no bound.
+// The requested error, that of tiles and the rounding of floats, that of a sum of a dozen; behind a
+// port plus 1e-4. For the sum of both in water that scatters, the veil's tolerance and veil_error()
+// (light/veil.h) are added, measured and not a bound.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 
 // R, G, B planar: all rows of R, then of G, then of B.
@@ -64,17 +65,17 @@ struct Lightmap {
     int width_px = 0;
     int height_px = 0;
     std::vector<float> samples;
-    // What the water scatters into the view (light/veil_map.h), in the same unit: the signal is
-    // samples + veil. Empty where the water does not scatter.
+    // The veil (light/veil_map.h), in the same unit: the signal is samples + veil. Empty if the
+    // water does not scatter.
     std::vector<float> veil{};
 };
 
-// samples + veil: what a camera gets.
+// samples + veil: the camera's signal.
 [[nodiscard]] std::vector<float> signal_of(const Lightmap& map);
 
 [[nodiscard]] VeilShare veil_share_of(const Lightmap& map);
 
-// What may change of a strobe without a change of its light.
+// What may change in a strobe without changing its light.
 struct StrobePlace {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector
@@ -83,26 +84,25 @@ struct StrobePlace {
 
 class LightmapMaker {
   public:
-    // paths: what the tables must serve; none: what the rig's own sled sees. Throws InputError for
-    // a rig with objects or a scene of the user's: the map is of the bare floor.
+    // paths: the range that the tables must cover; empty: those of the rig's own sled. Throws
+    // InputError for a rig with objects or a user's scene, since the map shows the bare floor.
     LightmapMaker(const Rig& rig,
                   const std::optional<PathRange>& paths,
                   const LightmapOptions& options);
 
-    // Throws InputError when this sled sees paths that the tables do not serve, or puts a lamp
-    // under the floor.
+    // Throws InputError if this sled sees paths outside the tables' range, or puts a lamp below the
+    // floor.
     [[nodiscard]] Lightmap map(const Sled& sled) const;
-    // The same into a map that is there: without allocation when it has the size.
+    // The same into an existing map: without allocation if it has the size.
     void map_into(const Sled& sled, Lightmap& map) const;
-    // Some rows alone.
+    // Some rows only.
     void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
 
-    // For each pixel a number that tells within which edges of which lamps' beams it is: where two
+    // For each pixel a number that identifies the edges of lamps' beams that enclose it: where two
     // maps have the same, no edge lies between.
     [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
-    // Moves, turns and dims the strobes, for all maps to come; their lamps stay, and so do the
-    // tables.
+    // Moves, turns and dims the strobes for all later maps; their lamps and the tables stay.
     void place(const std::vector<StrobePlace>& by_strobe);
 
     [[nodiscard]] const PathRange& paths() const { return paths_; }
@@ -117,16 +117,15 @@ class LightmapMaker {
     Rig rig_;
     LightmapOptions options_;
     PathRange paths_;
-    PathRange direct_;  // as they were asked for
+    PathRange direct_;  // as requested
     CameraRays rays_;
     SignalTable table_;
-    std::vector<float> vignetting_;  // by pixel; empty: none
-    unsigned veil_points_ =
-        kVeilMapPoints;  // of the rig as it was given, wherever strobes are placed
-    std::shared_ptr<const VeilMap> veil_;  // none where the water does not scatter
+    std::vector<float> vignetting_;          // by pixel; empty: none
+    unsigned veil_points_ = kVeilMapPoints;  // of the rig as given, wherever strobes are placed
+    std::shared_ptr<const VeilMap> veil_;    // empty if the water does not scatter
 };
 
-// The paths that any of these sleds sees, with some room for those between them.
+// The paths that any of these sleds sees, with some margin for those between them.
 [[nodiscard]] PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds);
 
 }  // namespace aphotic

@@ -19,7 +19,7 @@ double seconds_since(LightmapClock::time_point start) {
     return std::chrono::duration<double>(LightmapClock::now() - start).count();
 }
 
-// The planes of the file, one after another, and their names.
+// The planes of the file, in order, and their names.
 struct NamedPlanes {
     std::vector<std::string> names;
     std::vector<float> samples;

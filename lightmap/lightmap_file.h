@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A lightmap as an OpenEXR file: R, G, B, where the water scatters veil.R, veil.G, veil.B, and on
-// request the same of the rig's parts, in channels
-// such as fore.R (planes.h). Its attributes say which rig, pose and error it is of.
+// A lightmap as an OpenEXR file: R, G, B, in water that scatters veil.R, veil.G, veil.B, and on
+// request the same for the rig's parts, in channels such as fore.R (planes.h). Its attributes name
+// the rig, pose and error.
 #pragma once
 
 #include "lightmap/planes.h"
@@ -19,17 +19,17 @@ namespace aphotic {
 struct LightmapRequest {
     std::filesystem::path file;
     std::vector<RigPart> parts;
-    bool is_normalised =
-        false;  // each channel is divided by its largest value, parts by the whole's
+    bool is_normalised = false;  // each channel is divided by its largest value, parts by the
+                                 // largest value of the whole
     LightmapOptions map;
-    std::string version;  // of the program that makes it
+    std::string version;  // of the program that made it
     std::optional<ManifestModel> model{};
 };
 
 struct WrittenLightmap {
     Lightmap map;
     std::vector<std::string> channels;
-    std::array<float, kChannels> peaks{};  // before they are divided by
+    std::array<float, kChannels> peaks{};  // before division
     PathRange paths;
     std::size_t grid_size = 0;
     int table_steps = 0;
@@ -37,10 +37,10 @@ struct WrittenLightmap {
     double map_s = 0.0;
 };
 
-// Of maps by altitude in one folder, such as altitude_2.10m.exr: two digits after the point, or as
-// many as tell the altitudes apart.
+// Of maps by altitude in one folder, such as altitude_2.10m.exr: two decimals, or as many as
+// distinguish the altitudes.
 [[nodiscard]] std::vector<std::string> map_names(const std::vector<double>& altitude_m);
-// Maps of such names, those of an earlier run.
+// Maps with such names, from an earlier run.
 void remove_maps(const std::filesystem::path& folder);
 
 // Throws InputError where LightmapMaker does.

@@ -12,13 +12,13 @@
 namespace aphotic {
 namespace {
 
-// A step below which designs are alike: a hundredth of a millimetre in a box of a metre.
+// A step below which designs are equal: a hundredth of a millimetre in a box of a metre.
 constexpr double kLeastStep = 1e-5;
 
 struct Asked {
     const std::function<double(std::span<const double>)>& value;
     nlopt_opt search;
-    int left;  // of the evaluations: NLopt ends some steps later
+    int left;  // of the evaluations: NLopt ends a few steps later
     std::exception_ptr fault{};
 };
 

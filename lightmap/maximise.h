@@ -8,7 +8,7 @@
 //            Appl. 130, 2006): 10 (n + 1) points drawn over the cube, the start among them
 //   Local    Nelder and Mead's simplex in subspaces (Sbplx, after Rowan's Subplex, 1990)
 //
-// Both take the function's values alone. The caller keeps the best that it saw. The same seed gives
+// Both use only the function's values. The caller keeps the best that it saw. The same seed gives
 // the same points, in the same order.
 #pragma once
 
@@ -27,7 +27,7 @@ struct SearchEffort {
     std::uint64_t seed = 1;
 };
 
-// What value() throws ends the search, and comes out.
+// An exception from value() ends the search and is rethrown.
 void maximise(SearchWay way,
               const std::vector<double>& start,
               const SearchEffort& effort,

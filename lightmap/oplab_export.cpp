@@ -26,7 +26,7 @@ constexpr const char* kMean = "image_corrected_mean.npy";
 constexpr const char* kDeviation = "image_corrected_std.npy";
 constexpr std::size_t kParts = 3;  // a, b, c
 
-// What the fit of one sample leaves.
+// The residual of one sample's fit.
 struct Residual {
     double of_mean = 0.0;
     int lit = 0;  // altitudes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Maps over altitude as the parameters that oplab's correct_images learns from a survey, so that it
-// can correct one by a model: a folder of numpy's arrays, at the rig's own pitch, roll and water.
+// can correct one with a model: a folder of NumPy arrays, at the rig's own pitch, roll and water.
 //
 //   attenuation_parameters.npy  [channel, row, column, 3]  a, b [1/m], c of f(h) = a exp(b h) + c,
 //                               fitted with a >= 0, b <= 0 and 0 <= c <= the least light, so that
@@ -10,16 +10,15 @@
 //   image_corrected_mean.npy    [row, column, channel]     the gains once more
 //   image_corrected_std.npy     [row, column, channel]     kContrastOverBrightness of them
 //
-// In water that scatters, f is of the signal, floor and veil: c then carries what the veil tends to
-// with altitude.
+// In water that scatters, f is fitted to the signal, floor and veil: c then carries the veil's
+// limit at high altitude.
 //
-// oplab makes (I gain / f(h) - mean) / std contrast + brightness of an image I, by default with a
-// brightness of 30 % and a contrast of 3 %. With these arrays that is 0.3 I / f(h): the image
+// oplab computes (I gain / f(h) - mean) / std contrast + brightness of an image I, by default with
+// a brightness of 30 % and a contrast of 3 %. With these arrays that is 0.3 I / f(h): the image
 // divided by its light and nothing else. a, c and the gains may be in any unit, mean and std are in
 // that of I: multiply both by the factor from map to image (aphotic compare --scale).
 //
-// A pixel that no light reaches has a = 1, b = c = 0, as oplab gives it, a mean of 0 and a std
-// of 1.
+// A pixel without light has a = 1, b = c = 0, as in oplab, a mean of 0 and a std of 1.
 //
 // github.com/ocean-perception/oplab_pipeline, correct_images.
 #pragma once
@@ -44,14 +43,14 @@ struct AltitudeExport {
 };
 
 struct ExportedOplab {
-    // The residuals of all fits: relative to the mean of a pixel over altitude.
+    // The residuals of all fits, relative to a pixel's mean over altitude.
     double rms = 0.0;
     double worst = 0.0;
-    // Of the samples of all maps that have light, those that the fit is off by over kOplabOff.
+    // The share of all maps' lit samples for which the fit is off by more than kOplabOff.
     double share_off = 0.0;
 };
 
-// Of an earlier run nothing is left in the folder, which is there.
+// The folder exists; nothing of an earlier run is left in it.
 ExportedOplab export_oplab(const std::filesystem::path& folder,
                            const Rig& rig,
                            const AltitudeExport& request);

@@ -52,8 +52,8 @@ void require_different_names(const std::vector<RigPart>& parts) {
     for (const RigPart& part : parts) {
         if (names.insert(part.name).second) continue;
         throw InputError(
-            "strobes: found two parts of the light that would be named {}, of a strobe "
-            "and of a cone, or of two cones; allowed: names that differ",
+            "strobes: found two parts of the light named {}, of a strobe and a cone or of two "
+            "cones; allowed: names that differ",
             part.name);
     }
 }

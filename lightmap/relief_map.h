@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The signal of the rig's camera on a relief (light/relief_image.h) with the veil before it
-// (light/relief_veil.h): what a lightmap is on a plane. An emitter of a size is as many lamps as at
-// the rig's own altitude.
+// (light/relief_veil.h), the counterpart of a lightmap on a plane. An emitter with a size has as
+// many lamps as at the rig's own altitude.
 #pragma once
 
 #include "light/relief.h"
@@ -31,9 +31,9 @@ class ReliefMapMaker {
 
     [[nodiscard]] ReliefMap map(const Relief& relief, int within_px) const;
 
-    // Sights without a port begin at the pupil.
+    // Rays without a port begin at the pupil.
     [[nodiscard]] bool has_port() const;
-    // The ray in water of the middle of the spectrum, along which ranges are taken.
+    // The ray in water for the middle of the spectrum, along which ranges are measured.
     [[nodiscard]] WaterRay ray(double column, double row) const;
 
   private:

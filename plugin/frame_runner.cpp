@@ -29,8 +29,7 @@ namespace {
 
 constexpr auto kReportInterval = std::chrono::milliseconds(250);
 
-// The image while it is made. Beside it POV-Ray keeps its state, and leaves that when it is
-// stopped.
+// The image while it is rendered. POV-Ray keeps its state next to it, and leaves that when stopped.
 class PartImage {
   public:
     explicit PartImage(const fs::path& image) : file_(image) {}
@@ -52,10 +51,10 @@ struct Running {
     ManifestFrame frame;
     fs::path log;
     std::unique_ptr<PartImage> part;
-    Process process;  // last: it is stopped before its image is taken away
+    Process process;  // last: the process is stopped before its image is removed
 };
 
-// A scene of the user's own is read in its folder, with the includes that it would find there.
+// A user's scene is parsed in its own folder, with the includes found there.
 ProcessRequest in_scene_folder(ProcessRequest request,
                                const PovRay& povray,
                                const ManifestFrame& frame,
@@ -100,8 +99,8 @@ Running start(const PovRay& povray,
     return {.frame = frame, .log = log, .part = std::move(part), .process = std::move(process)};
 }
 
-// The last share of a frame that POV-Ray reported, from the end of its log: no more of it, for a
-// log that is written faster than it is read has no end.
+// The last progress that POV-Ray reported, from the end of its log only: a log that is written
+// faster than it is read has no end.
 double reported_share(const fs::path& log) {
     constexpr std::streamoff kTail = 400;
     std::ifstream in(log, std::ios::binary | std::ios::ate);
@@ -124,7 +123,7 @@ void require_success(const Running& run, const ProcessEnd& end) {
                    run.log.string());
 }
 
-// The end of a frame's run, when it has come.
+// The end of a frame's run, once it has come.
 std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
     try {
         const std::optional<ProcessEnd> end = run.process.poll();

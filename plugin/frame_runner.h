@@ -2,14 +2,14 @@
 //
 // Runs POV-Ray on the scenes of a folder, several at a time.
 //
-// POV-Ray runs inside DIR/povray, so that its restrictions on files never bite, or in the folder of
-// the user's own scene, so that it finds what that includes; with our render.ini as its only
-// settings file. Each frame is rendered beside its place, checked (image/frame_check.h) and then
-// renamed into it. POV-Ray's own words go to DIR/povray/logs/NAME.log.
+// POV-Ray runs inside DIR/povray, so that its file restrictions never apply, or in the folder of
+// the user's scene, so that it finds the scene's includes, with our render.ini as its only settings
+// file. Each frame is rendered under a temporary name, checked (image/frame_check.h) and then
+// renamed. POV-Ray's messages go to DIR/povray/logs/NAME.log.
 //
-// Frames are files, not an animation of one scene: a process costs 0.45 s more than a further
-// frame of an animation, half of it asleep, against seconds for a frame of useful size; and a
-// scene by itself can be read, rendered again, and sent elsewhere.
+// Frames are files, not an animation of one scene: a process costs 0.45 s more than a further frame
+// of an animation, half of it asleep, compared with seconds for a frame of useful size; and a
+// single scene can be read, rendered again, and sent elsewhere.
 #pragma once
 
 #include "plugin/povray.h"
@@ -29,28 +29,28 @@ struct FrameProgress {
 };
 
 struct RunOptions {
-    // Frames at a time; the threads of each, so that they use as many cores together.
+    // Frames at a time, and threads for each, so that together they use that many cores.
     int jobs = 1;
     std::function<void(const FrameProgress&)> report{};
-    // Called with each image before it is checked: for scenes whose settings ask POV-Ray for
-    // another format than EXR, makes the EXR of what stands beside it.
+    // Called with each image before it is checked: for scenes whose settings request another format
+    // than EXR, makes the EXR from the file next to it.
     std::function<void(const ManifestFrame&, const std::filesystem::path& image)> convert{};
-    // For a scene of the user's own: its folder, in which POV-Ray runs, and where it looks for
-    // includes beside the user's own library_paths.
+    // For a user's scene: its folder, in which POV-Ray runs, and its include paths besides the
+    // user's own library_paths.
     std::filesystem::path scene_folder{};
-    bool one_at_a_time = false;  // with all threads: a scene that reads what it writes
+    bool one_at_a_time = false;  // with all threads: the scene reads what it writes
     std::vector<std::string> library_paths{};
     double stall_s = kStall_s;
-    // Called for each frame, in the order in which they end: with its image when that is whole,
-    // before it takes its place, so that what stands there has been noted, however we end; and when
-    // it is there.
+    // Called for each frame, in the order in which they end: when its image is complete, before it
+    // is renamed, so that every renamed image has been recorded, however the process ends; and
+    // after it is renamed.
     std::function<void(const ManifestFrame&, const std::filesystem::path& image)> checked{};
     std::function<void(const ManifestFrame&)> arrived{};
 };
 
-// Renders the frames. When one fails the others are stopped, and a RunError quotes POV-Ray; when we
-// are interrupted, Interrupted comes (base/interruption.h). Neither leaves anything of the frames
-// that were under way. Images do not depend on jobs.
+// Renders the frames. If one fails the others are stopped, and a RunError quotes POV-Ray; an
+// interruption throws Interrupted (base/interruption.h). Neither leaves anything of unfinished
+// frames. Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,
                 const std::vector<ManifestFrame>& frames,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Where the user's POV-Ray looks for includes: the Library_Path lines of the INI file that it would
-// read by itself in this folder. Ours takes that file's place, and hands them on.
+// read by default in this folder. Ours replaces that file and passes them on.
 //
-// As POV-Ray 3.7 does it: the first found of $POVINI, ./povray.ini, ~/.povray/VERSION/povray.ini
-// and /etc/povray/VERSION/povray.ini.
+// As POV-Ray 3.7 does: the first found of $POVINI, ./povray.ini, ~/.povray/VERSION/povray.ini and
+// /etc/povray/VERSION/povray.ini.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace aphotic {
 
-// version: POV-Ray's, such as 3.7.0.10. Paths that are relative stand as they are.
+// version: POV-Ray's, such as 3.7.0.10. Relative paths are kept as they are.
 [[nodiscard]] std::vector<std::string> library_paths(const std::filesystem::path& folder,
                                                      const std::string& version);
 

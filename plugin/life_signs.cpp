@@ -23,8 +23,8 @@ struct Stat {
     std::uintmax_t ticks = 0;
 };
 
-// Of a process or one of its threads: "ID (name) state parent group ... utime stime ...", where the
-// name may hold anything, parentheses too (proc(5)).
+// For a process or one of its threads: "ID (name) state parent group ... utime stime ...", where
+// the name may contain anything, even parentheses (proc(5)).
 Stat stat_of(const fs::path& folder) {
     constexpr int kFieldsFromGroupToTimes = 8;
     std::ifstream in(folder / "stat");
@@ -42,7 +42,7 @@ Stat stat_of(const fs::path& folder) {
     return stat;
 }
 
-// "running waiting turns", in nanoseconds; of a kernel that does not count them, 0.
+// "running waiting turns", in nanoseconds; 0 if the kernel does not count them.
 double waited_s_of(const fs::path& thread) {
     constexpr double kNanosecond = 1e-9;
     std::ifstream in(thread / "schedstat");

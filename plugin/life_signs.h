@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Does a program still work? By two signs that differ from look to look as long as it does: what
-// it has written, and the processor time that its process group has used.
+// Whether a program still works, by two signs that keep changing while it does: its output, and the
+// processor time of its process group.
 //
-// Time is counted in looks, not by a clock: when the machine sleeps, or we are stopped and go on,
-// the program had no time either.
+// Time is counted in checks, not by a clock: while the machine sleeps, or we are stopped, the
+// program has no time either.
 #pragma once
 
 #include <sys/types.h>
@@ -14,10 +14,10 @@
 
 namespace aphotic {
 
-// Of the living processes of a group.
+// For the living processes of a group.
 struct ProcessorUse {
-    std::uintmax_t ticks = 0;  // clock ticks of the processor that they have had
-    double waited_s = 0.0;     // that their threads were ready in vain, until they ran again
+    std::uintmax_t ticks = 0;  // clock ticks of processor time
+    double waited_s = 0.0;     // that their threads were ready but did not run
     bool is_ready = false;     // one of their threads runs, or would if a processor were free
 };
 [[nodiscard]] ProcessorUse processor_use_of(pid_t group);
@@ -27,8 +27,8 @@ class LifeSigns {
     // group: a process group's number.
     LifeSigns(pid_t group, double patience_s);
 
-    // Called often. True when nothing has changed for patience_s in which it could have, or up to
-    // an eighth more.
+    // Call often. True if nothing has changed for patience_s in which it could have, or up to an
+    // eighth more.
     [[nodiscard]] bool are_gone(std::uintmax_t written_bytes);
 
   private:

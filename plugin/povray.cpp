@@ -41,7 +41,7 @@ fs::path located(const std::string& command, const std::string& origin) {
             command,
             origin);
     }
-    // It will run in another folder.
+    // Made absolute, since it will run in another folder.
     return fs::absolute(path);
 }
 
@@ -59,8 +59,8 @@ struct Version {
     std::string words;  // such as 3.7.0.10.unofficial
 };
 
-// "POV-Ray 3.7.0.10.unofficial" up to a blank, wherever it stands: complaints about its settings
-// may come before it.
+// "POV-Ray 3.7.0.10.unofficial" up to a blank, anywhere: complaints about its settings may precede
+// it.
 std::optional<Version> introduced_version(const std::string& printed) {
     static const std::regex kIntroduction(
         R"(POV-Ray ((\d{1,9})\.(\d{1,9})(?!\d)[^ \t\r\n]{0,80})(?=[ \t\r\n]|$))");
@@ -87,7 +87,8 @@ bool lists_openexr(std::string_view printed) {
 }  // namespace
 
 PovRay povray_from(std::string_view printed) {
-    // It introduces itself first, after a complaint or two; and what prints without end is not it.
+    // It identifies itself first, after a complaint or two; a program that prints without end is
+    // not POV-Ray.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
     const std::optional<Version> version = introduced_version(std::string(printed));
@@ -110,7 +111,7 @@ void require_openexr(const PovRay& povray, std::string_view why) {
 
 void require_format(const PovRay& povray, FrameFormat format) {
     if (format == FrameFormat::Exr)
-        require_openexr(povray, "in which frames are written; --frame-format png16 does without");
+        require_openexr(povray, "which frames need; --frame-format png16 does without");
 }
 
 std::string path_option(std::string_view option, const fs::path& path) {
@@ -118,7 +119,7 @@ std::string path_option(std::string_view option, const fs::path& path) {
         path.string(), [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; });
     if (!is_readable) {
         throw InputError(
-            "{}: found a path with letters beyond ASCII or a quotation mark; allowed: none, for "
+            "{}: found a path with non-ASCII letters or a quotation mark; allowed: none, since "
             "POV-Ray cannot read them",
             path.string());
     }

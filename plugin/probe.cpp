@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What the scene asked for, as aphotic.inc tells it.
+// What the scene asked for, as reported by aphotic.inc.
 struct Asked {
     std::set<std::string> reflectances;
     std::set<std::string> lamps;
@@ -46,7 +46,7 @@ struct Asked {
     int strobes = 0;
     int lights = 0;      // of ours, as it is called for them
     int all_lights = 0;  // as POV-Ray counts them
-    // Of its statistics.
+    // From its statistics.
     bool has_radiosity = false;
     bool has_photons = false;
     bool has_media = false;
@@ -57,14 +57,14 @@ struct Picture {
     std::vector<float> red, green, blue;
 };
 
-// Runs of POV-Ray beside those for each strobe.
+// Runs of POV-Ray besides those for each strobe.
 constexpr std::size_t kOnceForAll = 2;
 
-// What half floats cannot hold is looked at again with so much less light.
+// Pixels that half floats cannot hold are measured again with this much less light.
 constexpr int kMostTries = 8;
 constexpr int kLessLightLog2 = 10;
 
-// How many pixels of strobes an attempt left without a path or brightness, and why.
+// The number of strobes' pixels that an attempt left without a path or brightness, and why.
 struct Unmeasured {
     std::size_t too_bright = 0;  // for half floats
     std::size_t too_far = 0;     // for the loss that was tried
@@ -75,7 +75,7 @@ struct Unmeasured {
     [[nodiscard]] std::size_t count() const { return not_faint() + too_faint; }
 };
 
-// The files beside a scene, and when each was written.
+// The files in a scene's folder, and when each was written.
 std::map<fs::path, fs::file_time_type> written_files(const fs::path& folder) {
     std::map<fs::path, fs::file_time_type> files;
     std::error_code ignored;
@@ -85,7 +85,7 @@ std::map<fs::path, fs::file_time_type> written_files(const fs::path& folder) {
     return files;
 }
 
-// POV-Ray takes no other letters in the name of a file that it is to include.
+// POV-Ray allows no other letters in the name of an included file.
 bool is_plain_name(const std::string& name) {
     return std::ranges::all_of(
         name, [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"' && c != '\\'; });
@@ -95,12 +95,12 @@ bool is_lit(float sample) {
     return sample > 0.0F;
 }
 
-class Survey {
+class SceneProbe {
   public:
-    Survey(const PovRay& povray,
-           const Rig& rig,
-           const fs::path& scene_file,
-           const SurveyOptions& options)
+    SceneProbe(const PovRay& povray,
+               const Rig& rig,
+               const fs::path& scene_file,
+               const ProbeOptions& options)
         : povray_(povray), rig_(rig), options_(options) {
         scene_.file = fs::absolute(scene_file).lexically_normal();
         if (!fs::is_regular_file(scene_.file)) {
@@ -109,7 +109,7 @@ class Survey {
         }
         if (!is_plain_name(scene_.file.filename().string())) {
             refuse(
-                "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, blanks, "
+                "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, spaces, "
                 "and signs other than \" and \\");
         }
         scene_.files_digest = digest_of_scene(scene_.file);
@@ -118,10 +118,10 @@ class Survey {
         }
         SceneOptions settings;
         settings.ini_lines = options_.ini_lines;
-        write_text_file(folder_.path() / "survey.ini", render_ini(rig_, settings));
+        write_text_file(folder_.path() / "probe.ini", render_ini(rig_, settings));
         const int longer = std::max(rig_.camera.width_px, rig_.camera.height_px);
         const auto scaled = [&](int size_px) {
-            return std::max(1, std::min(size_px, size_px * kSurveyPixels / longer));
+            return std::max(1, std::min(size_px, size_px * kProbePixels / longer));
         };
         width_px_ = scaled(rig_.camera.width_px);
         height_px_ = scaled(rig_.camera.height_px);
@@ -141,7 +141,7 @@ class Survey {
         require_light_of_ours();
         measure(asked.strobes);
         require_unchanged(scene_.file, scene_.files_digest);
-        // What no listing of files finds, the pictures show.
+        // Changes that no listing of files finds show in the pictures.
         scene_.digest = sha256_of_text(scene_.files_digest + sha256_of_text(measured_));
         return std::move(scene_);
     }
@@ -149,7 +149,7 @@ class Survey {
   private:
     struct Task {
         std::string name;
-        SurveyFrame frame;
+        ProbeFrame frame;
     };
     struct Running {
         Task task;
@@ -167,8 +167,8 @@ class Survey {
             "{}: {}", scene_.file.string(), fmt::format(what, std::forward<T>(with)...));
     }
 
-    // By the rig's own floor: one e-folding over its longest path, and a peak of 2^6, in the middle
-    // of what half floats hold.
+    // From the rig's own floor: one e-folding over its longest path, and a peak of 2^6, in the
+    // middle of the half floats' range.
     void scale_measurement() {
         constexpr int kPeakLog2 = 6;
         const PathRange paths = path_range(rig_);
@@ -205,13 +205,13 @@ class Survey {
         return {.executable = povray_.executable,
                 .arguments = std::move(arguments),
                 .folder = scene_.file.parent_path(),
-                .environment = {{"POVINI", (folder_.path() / "survey.ini").string()}},
+                .environment = {{"POVINI", (folder_.path() / "probe.ini").string()}},
                 .log = file_of(task, ".log"),
                 .stall_s = options_.stall_s};
     }
 
-    // POV-Ray's words without the files that will be gone: the includes, and the lines around the
-    // scene, where it notices what the scene leaves open.
+    // POV-Ray's messages without the files that will be gone: the includes, and the lines around
+    // the scene, where it detects what the scene leaves open.
     [[nodiscard]] std::string in_users_files(std::string said, const Task& task) const {
         const std::string around = fmt::format("File '{}' line ", file_of(task, ".pov").string());
         const std::string scene = scene_.file.filename().string();
@@ -238,7 +238,7 @@ class Survey {
                         said.c_str(),
                         more.c_str());
         };
-        // The scene's fault when the parser says so, POV-Ray's otherwise.
+        // The scene's fault if the parser says so, POV-Ray's otherwise.
         if (said.find("Parse Error") != std::string::npos) fail.operator()<InputError>("");
         fail.operator()<RunError>(words_of_full_disk(folder_.path()));
     }
@@ -261,7 +261,7 @@ class Survey {
             while (started < tasks.size() && running.size() < jobs) {
                 const Task& task = tasks[started++];
                 write_text_file(file_of(task, ".pov"),
-                                survey_sdl(rig_, scene_.file.filename().string(), task.frame));
+                                probe_sdl(rig_, scene_.file.filename().string(), task.frame));
                 running.push_back({.task = task, .process = Process(request_for(task))});
             }
             for (auto at = running.begin(); at != running.end();) {
@@ -312,7 +312,7 @@ class Survey {
         scene_.writes_files |= written_files(folder) != before;
         const std::string digest = digest_of_scene(scene_.file);
         if (digest != scene_.files_digest) {
-            // It wrote a file that it names. Now that this is there, it is as it will be.
+            // It wrote a file that it names. Now that the file exists, it is in its final state.
             scene_.files_digest = digest;
             run_tasks({task});
         }
@@ -362,13 +362,12 @@ class Survey {
                 asked.has_camera ? "a second camera" : "no camera of aphotic.inc");
         }
         if (const int others = asked.all_lights - asked.lights; others != 0) {
-            refuse(
-                "found {} no strobe of aphotic.inc; allowed: none, for such light has no spectrum",
-                others == 1 ? "1 light source that is"
-                            : fmt::format("{} light sources that are", others));
+            refuse("found {} not from aphotic.inc; allowed: none, since such light has no spectrum",
+                   others == 1 ? "1 light source that is"
+                               : fmt::format("{} light sources that are", others));
         }
         if (asked.lights > kMostLightsInMedia && !rig_.water.is_clear()) {
-            refuse("found {} cones of light; allowed: {}, which is what POV-Ray takes in water",
+            refuse("found {} cones of light; allowed: {}, POV-Ray's limit in water",
                    asked.lights,
                    kMostLightsInMedia);
         }
@@ -398,13 +397,12 @@ class Survey {
     // --- What its light is
     // --------------------------------------------------------------------------
 
-    // POV-Ray does not reckon with the water on the way from surface to surface, and draws samples
-    // where it gathers light.
+    // POV-Ray ignores the water between surfaces, and draws samples where it gathers light.
     void require_what_is_bounded(const Asked& asked) {
         const std::array<std::pair<bool, const char*>, 3> found{
             {{asked.has_radiosity, "radiosity"},
              {asked.has_photons, "photons"},
-             {asked.has_media, "media of the scene's own"}}};
+             {asked.has_media, "the scene's own media"}}};
         for (const auto& [is_there, what] : found) {
             if (!is_there) continue;
             if (!options_.unchecked) {
@@ -418,9 +416,9 @@ class Survey {
         has_radiosity_ = asked.has_radiosity;
     }
 
-    // In one frame: with all strobes off, in green and blue, nothing may be bright; with water on
-    // the camera's leg alone, in red, it must dim. So little of it that nothing is lost but what
-    // lies beyond all water, as a sky.
+    // In one frame: with all strobes off, nothing may be bright in green and blue; with water on
+    // the camera's leg only, red must be attenuated. So little water that only light from beyond
+    // all water, such as a sky, is lost.
     void require_light_of_ours() {
         constexpr double kLittle = 0x1p-4;
         const double K_per_m = has_water_ ? kLittle * attenuation_per_m_ : 0.0;
@@ -437,8 +435,9 @@ class Survey {
         if (std::ranges::any_of(through_water.green, is_lit) ||
             std::ranges::any_of(through_water.blue, is_lit)) {
             refuse(
-                "found light with all strobes off; allowed: none, for such light has no spectrum. "
-                "Is there a finish with emission, a light_group, or a medium that glows?");
+                "found light with all strobes off; allowed: none, since such light has no "
+                "spectrum. Is there a finish with emission, a light_group, or a medium that "
+                "glows?");
         }
         if (has_water_ && std::ranges::any_of(bare.red, is_lit)) {
             require_water_in_view(through_water, bare);
@@ -465,7 +464,7 @@ class Survey {
             const auto pixel = static_cast<int>(least - plane->begin());
             refuse(
                 "found light of {:.3g}, where the brightest is {:.3g}, at column {}, row {} of {} "
-                "x {}; allowed: 0 and more. Is there a colour under 0?",
+                "x {}; allowed: 0 or more. Is there a colour below 0?",
                 *least,
                 *std::ranges::max_element(*plane),
                 pixel % width_px_,
@@ -475,8 +474,8 @@ class Survey {
         }
     }
 
-    // Without water, channels differ by colours that are numbers; those of a sky are behind it.
-    // Where all three are more than half floats hold, they are compared by less light.
+    // Without water, channels differ by colours given as numbers; a sky's are behind it. Where all
+    // three exceed half floats, they are compared with less light.
     [[nodiscard]] bool has_own_colours(const Picture& through_water) {
         Task task = plain_task();
         for (int attempt = 0; attempt < kMostTries; ++attempt) {
@@ -501,11 +500,11 @@ class Survey {
         return true;
     }
 
-    // Fills in what is not known yet of each pixel, and counts what it leaves.
-    void take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit, Unmeasured& left) {
+    // Fills in what is not known yet of each pixel, and counts the rest.
+    void take_in(const Picture& picture, const ProbeFrame& frame, Lit& lit, Unmeasured& left) {
         constexpr double kLeastNormal = 0x1p-14;      // of half floats: under it they lose digits
-        constexpr double kLeastThatCounts = 0x1p-20;  // 1e-8 of the peak that is aimed at
-        constexpr double kLeastLoss = 0x1p-5;         // tells the path to 3 % by half floats
+        constexpr double kLeastThatCounts = 0x1p-20;  // 1e-8 of the intended peak
+        constexpr double kLeastLoss = 0x1p-5;         // gives the path to 3 % with half floats
         const auto& [little_per_m, loss_per_m, gain_per_m] = frame.attenuation_per_m;
         for (std::size_t i = 0; i < lit.size(); ++i) {
             const double bare = picture.red[i];
@@ -527,7 +526,7 @@ class Survey {
                     ++left.too_far;
                     continue;
                 }
-                // What a mirror shows of the void, the gain over endless water makes infinite.
+                // Over a mirror's endless path, the gain makes the void infinite.
                 const double path_m =
                     std::isfinite(raised)
                         ? measured_path_m(dimmed, raised, loss_per_m - gain_per_m)
@@ -546,12 +545,13 @@ class Survey {
         }
     }
 
-    // A strobe is measured again where pixels were brighter or fainter than half floats hold, with
-    // less or more light, or their paths too long or short for the loss that was tried.
+    // A strobe is measured again with less or more light where pixels were brighter or fainter than
+    // half floats hold, or with another loss where their paths were too long or short for the one
+    // tried.
     void measure(int strobes) {
         constexpr double kLessLoss = 8.0;
         constexpr double kMoreLoss = 32.0;
-        // Dims what is in view by nothing that half floats show, and puts out what is behind all
+        // Attenuates what is in view by less than half floats show, and removes what is behind all
         // water.
         constexpr double kLittleLoss = 0x1p-10;
         std::vector<Lit> lit(
@@ -608,14 +608,16 @@ class Survey {
         put_together(lit);
     }
 
-    // Of what has no promise anyway it voids the promise too.
+    // If there is no promise anyway, it voids the promise too.
     void require_no_dry_light(std::size_t pixels) {
-        const std::string what = fmt::format(
-            "light that no water dims, in {} of {} pixels", pixels, width_px_ * height_px_);
+        const std::string what =
+            fmt::format("light that passes through no water, in {} of {} pixels",
+                        pixels,
+                        width_px_ * height_px_);
         if (scene_.no_promise.empty()) {
             refuse(
-                "found {}; allowed: water on its way. Are camera and strobes inside an object that "
-                "is not hollow?",
+                "found {}; allowed: water on its path. Are camera and strobes inside an object "
+                "that is not hollow?",
                 what);
         }
         scene_.no_promise.push_back(what);
@@ -637,7 +639,7 @@ class Survey {
 
     const PovRay& povray_;
     const Rig& rig_;
-    const SurveyOptions& options_;
+    const ProbeOptions& options_;
     ScratchFolder folder_;
     UserScene scene_;
     int width_px_ = 1;
@@ -649,17 +651,17 @@ class Survey {
     bool has_radiosity_ = false;  // unchecked
     bool is_any_measured_ = false;
     std::size_t tasks_done_ = 0;
-    std::size_t tasks_known_ = 0;  // with those to come, as far as one knows
+    std::size_t tasks_known_ = 0;  // with those to come, as far as is known
 };
 
 }  // namespace
 
-UserScene survey_scene(const PovRay& povray,
-                       const Rig& rig,
-                       const fs::path& scene_file,
-                       const SurveyOptions& options) {
-    require_openexr(povray, "in which a scene of your own is measured before it is planned");
-    return Survey(povray, rig, scene_file, options).run();
+UserScene probe_scene(const PovRay& povray,
+                      const Rig& rig,
+                      const fs::path& scene_file,
+                      const ProbeOptions& options) {
+    require_openexr(povray, "which the probe of a scene of your own needs");
+    return SceneProbe(povray, rig, scene_file, options).run();
 }
 
 }  // namespace aphotic

@@ -26,8 +26,8 @@ namespace bp = boost::process;
 
 namespace {
 
-// POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL. A group of its own, so
-// that what it starts can be stopped with it.
+// POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL. It has its own process
+// group, so that whatever it starts can be stopped with it.
 struct DieWithParent : bp::extend::handler {
     template <typename Executor>
     void on_exec_setup(Executor&) const {
@@ -36,7 +36,7 @@ struct DieWithParent : bp::extend::handler {
     }
 };
 
-// A file of its own, in place of the log that it shares with stderr.
+// A separate file, instead of the log shared with stderr.
 struct OwnOutput : bp::extend::handler {
     explicit OwnOutput(const std::filesystem::path& output) : file(output.string()) {}
     template <typename Executor>
@@ -85,8 +85,8 @@ struct Process::Child {
     LifeSigns life_signs;
     std::optional<ProcessEnd> end;
 
-    // Once it has ended, its number is free only when its end is taken: so what it started and left
-    // running is stopped first, while the group's number is surely its own.
+    // Once it has ended, its number is reused only after we wait for it: so processes that it left
+    // running are stopped first, while the group's number is certainly its own.
     void take_end() {
         ::kill(-pid, SIGKILL);
         int status = 0;
@@ -119,8 +119,8 @@ struct Process::Child {
 
 Process::Process(const ProcessRequest& request) {
     const InterruptionHold hold;
-    // Boost goes on in our own folder if it cannot change into this one, starts the program though
-    // its log cannot be opened, and writes over the beginning of an older one.
+    // Boost continues in our own folder if it cannot change into this one, starts the program even
+    // if its log cannot be opened, and overwrites the beginning of an older log.
     if (!std::filesystem::is_directory(request.folder)) {
         throw RunError("{}: cannot be started: {} is not a folder",
                        request.executable.string(),

@@ -54,7 +54,7 @@ void require_dark(const fs::path& scene, const SurveyPicture& picture, ExrReader
                        (static_cast<std::ptrdiff_t>(frame.width_px()) * frame.height_px());
     throw InputError(
         "{}: found light with all strobes off, at column {}, row {} of image {}; allowed: none, "
-        "for ranges are told by a fog",
+        "since ranges are measured by fog",
         scene.string(),
         pixel % frame.width_px(),
         pixel / frame.width_px(),

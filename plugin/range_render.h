@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far each pixel sees in a scene of the user's own, of the images of a simulated survey, by one
-// run of POV-Ray each, which asks no texture of the scene's:
+// How far each pixel of a simulated survey's images sees in a user's scene, by one POV-Ray run per
+// image, which evaluates none of the scene's textures:
 //
 //   red = 1 - exp(-D / f),   Z = o_z + D w_z
 //
@@ -11,13 +11,12 @@
 //       middle of the camera's range: behind a port there is no fog, for no water is there
 // Z     along the camera's axis from the pupil [m]
 //
-// A 16-bit PNG rounds red to q = 2^-17, so that D is off by at most q f exp(D / f): 2.1e-5
+// A 16-bit PNG rounds red to q = 2^-17, so the error of D is at most q f exp(D / f): 2.1e-5
 // altitudes at one altitude, 5.6e-5 at two. From kFarthestFogs f on, where that is 0.3 % of D, it
-// is unknown. Half floats would round forty times as coarsely. What shines by itself shows in green
-// and blue, and is an InputError.
+// is unknown. Half floats would round forty times as coarsely. Objects that emit light show in
+// green and blue, and are an InputError.
 //
-// Of a mirror or a glass, D is none that any ray goes: red is then the sum of what shows, each by
-// its share.
+// For a mirror or glass, D is no ray's length: red is then the weighted sum of what shows.
 #pragma once
 
 #include "plugin/frame_runner.h"
@@ -39,8 +38,8 @@ struct RangeRender {
     std::vector<std::string> ini_lines{};  // settings of the scene's, such as its clock
 };
 
-// Of those whose `image` is not there yet, that: one float channel Z, NaN where it is unknown.
-// folder: of the scenes.
+// Renders those whose `image` does not exist yet: one float channel Z, NaN where it is unknown.
+// folder: for the scenes.
 void render_ranges(const PovRay& povray,
                    const std::filesystem::path& folder,
                    const RangeRender& render,

@@ -48,7 +48,7 @@ bool is_whole(const fs::path& image, const Manifest& wanted) {
     }
 }
 
-// The same scene, drawn before, its image as it was noted.
+// The same scene, rendered before, with its image as recorded.
 bool still_holds(const fs::path& folder,
                  const ManifestFrame& earlier,
                  const ManifestFrame& wanted,
@@ -59,7 +59,7 @@ bool still_holds(const fs::path& folder,
            is_whole(image_path(folder, earlier), manifest);
 }
 
-// Notes the images of the earlier run that still hold.
+// Records the images of the earlier run that are still valid.
 void keep_what_holds(const fs::path& folder, const Manifest& earlier, Manifest& manifest) {
     for (ManifestFrame& frame : manifest.frames) {
         const auto before = frame_named(earlier, frame.name);
@@ -77,14 +77,14 @@ void take_away(const fs::path& file) {
     }
 }
 
-// The reference tracer's, which beside a manifest would be taken for the render's.
+// The reference tracer's, which next to a manifest would be taken for the render's.
 void take_away_a_trace(const fs::path& folder) {
     if (!is_traced(folder / "image.exr") && !is_traced(folder / "spectral.exr")) return;
     for (const char* file : {"trace.json", "preview.png", "spectral.exr", "image.exr"})
         take_away(folder / file);
 }
 
-// Frames of the earlier run that this one does not have, and the images made of them.
+// Frames of the earlier run that this one does not have, and the images made from them.
 void take_away_what_is_past(const fs::path& folder,
                             const std::optional<Manifest>& earlier,
                             const Manifest& wanted) {
@@ -108,12 +108,12 @@ void take_away_what_is_past(const fs::path& folder,
 }
 
 struct OwnScene {
-    fs::path file{};  // absolute; none: the rig's floor
+    fs::path file{};  // absolute; empty: the rig's floor
     std::string digest{};
     bool is_alone = false;  // no two frames at a time
 };
 
-// Renders these, and notes each in the manifest as it is done.
+// Renders these, and records each in the manifest when it is done.
 void run_noted(const PovRay& povray,
                const fs::path& folder,
                const std::vector<ManifestFrame>& frames,
@@ -133,7 +133,7 @@ void run_noted(const PovRay& povray,
         };
     }
     run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
-        // A frame of a scene that was edited under way may be of either.
+        // A frame of a scene that was edited during the render may show either version.
         if (!scene.file.empty()) require_unchanged(scene.file, scene.digest);
         for (ManifestFrame& noted : manifest.frames) {
             if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
@@ -143,7 +143,7 @@ void run_noted(const PovRay& povray,
     run_frames(povray, folder, frames, manifest.width_px, manifest.height_px, run);
 }
 
-// The digest of a user's scene that scenes were written for.
+// The digest of the user's scene for which scenes were written.
 fs::path scene_note(const fs::path& folder) {
     return folder / "povray" / "scene.sha256";
 }
@@ -157,7 +157,7 @@ void write_scenes_and_note(const fs::path& folder, const SceneSet& set) {
     }
 }
 
-// That of scenes which were written before. As it was then, or frames would be of two scenes.
+// For scenes that were written before: the digest of then, or frames would show two scenes.
 OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.scene) return {};
     const std::string& file = manifest.scene->file;
@@ -165,14 +165,14 @@ OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     const fs::path note = scene_note(folder);
     if (!fs::exists(note) || read_text_file(note) != digest)
         throw InputError(
-            "{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
-            "generate`",
+            "{}: found scenes made from an older {}; allowed: scenes from the current one, by "
+            "`aphotic generate`",
             folder.string(),
             file);
     return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
 }
 
-// What POV-Ray reads of these frames: their scenes, the settings, and what all scenes include.
+// POV-Ray's input for these frames: their scenes, the settings, and the includes.
 void copy_scenes(const fs::path& from,
                  const fs::path& to,
                  const std::vector<ManifestFrame>& frames) {
@@ -190,8 +190,8 @@ void copy_scenes(const fs::path& from,
 
 enum class Frames { ToBeRendered, Done };
 
-// Of the bare floor it is known beforehand; else when the frames are there, of which one tells how
-// far each pixel sees.
+// For the bare floor it is known beforehand; otherwise once the frames exist, one of which shows
+// how far each pixel sees.
 void note_veil(
     const fs::path& folder, const SceneSet& set, Frames frames, int threads, Manifest& manifest) {
     if (!set.scattering) return;
@@ -283,8 +283,8 @@ std::size_t join_frames(const fs::path& folder) {
         if (!has_frame(manifest)) manifest.povray_version = made->povray_version;
         if (has_frame(*made) && made->povray_version != manifest.povray_version)
             throw InputError(
-                "{}: found frames of POV-Ray {}; allowed: of {}, as the others. Remove it, and "
-                "render its frames anew",
+                "{}: found frames by POV-Ray {}; allowed: by {}, like the others. Remove it and "
+                "render its frames again",
                 share.string(),
                 made->povray_version,
                 manifest.povray_version);
@@ -317,7 +317,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set, int threads) {
     for (const ManifestFrame& frame : manifest.frames) {
         if (frame.done()) continue;
         const auto before = earlier ? frame_named(*earlier, frame.name) : std::nullopt;
-        // One rendered by hand, which was never noted, may be this one.
+        // A frame rendered by hand, which was never recorded, may be this one.
         const bool may_be_this =
             before && !before->done() && before->scene_sha256 == frame.scene_sha256;
         if (!may_be_this) take_away(image_path(folder, frame));

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Renders a set of scenes into a folder, and goes on where an earlier run stopped.
+// Renders a set of scenes into a folder, and continues where an earlier run stopped.
 //
-// A frame of an earlier run is kept when its scene and settings are the same to the bit, the
-// same version of POV-Ray made it, and its image is the one that was noted and whole; all others
-// are rendered. Times of files count for nothing. The manifest is written anew after each frame, so
-// that whatever interrupts a render costs the frames under way and nothing else.
+// A frame of an earlier run is kept if its scene and settings are identical to the bit, the same
+// version of POV-Ray rendered it, and its image is complete and the one recorded; all others are
+// rendered. File times are ignored. The manifest is rewritten after each frame, so that an
+// interruption costs only the unfinished frames.
 //
-// What an earlier run left of other frames, and images made from them, is taken away: it could
-// not be used again, only be mistaken for this rig's. So are the reference tracer's images.
+// Other frames of an earlier run, and images made from them, are removed: they could not be used
+// again, only be mistaken for this rig's. So are the reference tracer's images.
 //
-// A user's scene that is edited meanwhile ends the render: no frame of the edited one is noted, and
-// those noted before belong to the scene as it was, so the next run renders them again.
+// If a user's scene is edited meanwhile, the render ends: no frame of the edited scene is recorded,
+// and those recorded before belong to the old scene, so the next run renders them again.
 #pragma once
 
 #include "base/work_folder.h"
@@ -30,28 +30,28 @@ struct RenderResult {
     std::size_t kept = 0;
 };
 
-// A manifest of the folder that cannot be read is an InputError, and nothing is touched: it might
-// be another program's, or note hours of frames.
+// An unreadable manifest in the folder is an InputError, and nothing is touched: it might be
+// another program's, or record hours of frames.
 RenderResult render(const PovRay& povray,
                     const std::filesystem::path& folder,
                     const SceneSet& set,
                     const RunOptions& options);
 
-// A share (base/work_folder.h) of the frames of a folder whose scenes are there, by render() or
-// generate(): into its own folder, and no image is made of them. Frames that the folder has stay
-// there. The folder itself is only read: of a scene of the user's own, options name the includes.
+// A share (base/work_folder.h) of the frames of a folder whose scenes exist, from render() or
+// generate(): into its own folder, without images. Frames that the folder has stay there. The
+// folder itself is only read: for a user's scene, options name the includes.
 RenderResult render_share(const PovRay& povray,
                           const std::filesystem::path& folder,
                           WorkShare share,
                           const RunOptions& options);
 
-// Takes the frames that shares left below the folder, where they are of its scenes, into it and its
-// manifest; render() does so by itself. Returns how many. An InputError where other frames are of
-// another version of POV-Ray.
+// Moves the frames that shares left below the folder, if they are of its scenes, into it and its
+// manifest; render() does so by itself. Returns their number. An InputError if frames are from
+// different versions of POV-Ray.
 std::size_t join_frames(const std::filesystem::path& folder);
 
 // Writes scenes and manifest without rendering. Images of earlier scenes, and the reference
-// tracer's, are taken away, so that they cannot be taken for images of these.
+// tracer's, are removed, so that they cannot be mistaken for images of these.
 Manifest generate(const std::filesystem::path& folder, const SceneSet& set, int threads = 1);
 
 }  // namespace aphotic

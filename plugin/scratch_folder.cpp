@@ -22,7 +22,7 @@ fs::path temporary_folder() {
     fs::path folder = fs::temp_directory_path(error);
     if (!error) return folder;
     const char* variable = std::getenv("TMPDIR");
-    throw RunError("TMPDIR: found {}; allowed: a folder that is there, or nothing, for /tmp",
+    throw RunError("TMPDIR: found {}; allowed: an existing folder, or nothing, for /tmp",
                    variable == nullptr ? "nothing, and no folder /tmp" : variable);
 }
 

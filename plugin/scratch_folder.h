@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A folder of our own among the temporary ones, gone when the object is: also when we are
-// interrupted. Only SIGKILL leaves it.
+// A temporary folder, removed with the object, also after an interruption. Only SIGKILL leaves it.
 #pragma once
 
 #include "base/interruption.h"
@@ -12,7 +11,7 @@ namespace aphotic {
 
 class ScratchFolder {
   public:
-    // Throws RunError when none can be made.
+    // Throws RunError if none can be made.
     ScratchFolder();
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;

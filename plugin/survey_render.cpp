@@ -35,7 +35,7 @@ std::string with_declarations(std::string scene, const std::string& declarations
     return scene.insert(at + version.size(), declarations);
 }
 
-// A picture whose frames are under way. Their names begin with its number.
+// A picture whose frames are being rendered. Their names begin with its number.
 struct PictureUnderWay {
     fs::path image;
     SceneSet scenes;
@@ -61,8 +61,7 @@ PictureUnderWay begun(const fs::path& folder,
     return under_way;
 }
 
-// Whatever interrupts this leaves the frames, or the image and some of the frames: never half of
-// one.
+// An interruption leaves the frames, or the image and some of the frames: never part of one.
 void integrate_picture(const fs::path& folder, int threads, PictureUnderWay& picture) {
     const fs::path made = folder / (picture.image.stem().string() + ".made");
     Manifest& manifest = picture.scenes.manifest;
@@ -160,7 +159,7 @@ void render_pictures(const PovRay& povray,
     run.scene_folder = common.scene_file.parent_path();
     run.one_at_a_time = common.scene_writes_files;
     run.checked = [&](const ManifestFrame&, const fs::path&) {
-        // A frame of a scene that was edited under way may be of either.
+        // A frame of a scene that was edited during the render may show either version.
         if (!common.scene_file.empty())
             require_unchanged(common.scene_file, common.scene_files_digest);
     };

@@ -54,10 +54,10 @@ Array<Sample, 3> image_of_planes(
                              static_cast<std::int64_t>(height * width)});
 }
 
-// Of a property whose array is no view of the object.
+// For a property whose array is not a view of the object.
 inline constexpr auto kOwn = nb::rv_policy::automatic;
 
-// An owner of its own, and where its samples are.
+// A new owner, and where its samples are.
 template <typename Sample>
 std::pair<Sample*, nb::capsule> owned(std::vector<Sample> samples) {
     auto held = std::make_unique<std::vector<Sample>>(std::move(samples));

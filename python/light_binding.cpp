@@ -98,7 +98,7 @@ void bind_plan(nb::module_& module) {
         .def_prop_ro("frames", &RenderPlan::frames)
         .def_prop_ro("promise",
                      promise_of,
-                     "Bound of the relative error of R, G and B; None where there is none.")
+                     "Bound of the relative error of R, G and B; None if there is none.")
         .def_ro("no_promise", &RenderPlan::no_promise, "Why there is none.")
         .def_prop_ro("paths_m", [](const RenderPlan& plan) {
             return std::pair(plan.family.shortest_path_m, plan.family.longest_path_m);
@@ -139,7 +139,7 @@ RigLightmap lightmap(
     return light;
 }
 
-// Tables once, then a map of any pose and any places of the strobes in milliseconds.
+// Tables once, then a map for any pose and any places of the strobes in milliseconds.
 class RigLightmapMaker {
   public:
     RigLightmapMaker(const TextRig& rig,
@@ -175,7 +175,7 @@ class RigLightmapMaker {
 
     void place(const TextRig& rig) {
         if (rig.rig.strobes.size() != rig_.strobes.size()) {
-            throw InputError("strobes: found {}; allowed: {}, as the tables are for",
+            throw InputError("strobes: found {}; allowed: {}, like the tables",
                              rig.rig.strobes.size(),
                              rig_.strobes.size());
         }
@@ -191,7 +191,7 @@ class RigLightmapMaker {
     }
 
   private:
-    // Never none: what the tables of a map alone do not serve is black in it, without a word.
+    // Never empty: paths outside a map's tables would silently be black in it.
     static PathRange paths_for(const Rig& rig, const std::vector<double>& altitudes_m) {
         std::vector<Sled> sleds{rig.sled};
         for (const double altitude_m : altitudes_m) {
@@ -233,7 +233,7 @@ void bind_lightmap(nb::module_& module) {
         .def_prop_ro("R", channel_of<0>)
         .def_prop_ro("G", channel_of<1>)
         .def_prop_ro("B", channel_of<2>)
-        .def_prop_ro("floor", floor_of, "R, G and B of the floor's light: a view, no copy.")
+        .def_prop_ro("floor", floor_of, "R, G and B of the floor's light: a view, not a copy.")
         .def_prop_ro("veil", veil_of, "What the water scatters into the view; None in clear water.")
         .def_prop_ro(
             "signal",
@@ -241,7 +241,7 @@ void bind_lightmap(nb::module_& module) {
                 return image_of(signal_of(light.map), light.map.height_px, light.map.width_px);
             },
             kOwn,
-            "Floor and veil: what the camera gets.")
+            "Floor plus veil: the camera's signal.")
         .def_ro("strobes", &RigLightmap::strobes, "By name, each strobe's own light.");
     module.def("lightmap",
                lightmap,
@@ -264,7 +264,7 @@ void bind_lightmap(nb::module_& module) {
              nb::arg("veil") = true,
              nb::arg("threads") = 0,
              NoLock(),
-             "altitudes_m: between the rig's own and these, maps will be asked for.")
+             "altitudes_m: the range of altitudes to prepare for, besides the rig's own.")
         .def("map",
              &RigLightmapMaker::map,
              nb::kw_only(),
@@ -272,12 +272,12 @@ void bind_lightmap(nb::module_& module) {
              nb::arg("pitch_deg") = nb::none(),
              nb::arg("roll_deg") = nb::none(),
              NoLock(),
-             "The map of this pose; what is left out is the rig's.")
-        .def(
-            "place",
-            &RigLightmapMaker::place,
-            nb::arg("rig"),
-            "From now on the strobes stand, aim and shine as this rig's do; lamps and beams stay.");
+             "The map of this pose; values omitted are the rig's.")
+        .def("place",
+             &RigLightmapMaker::place,
+             nb::arg("rig"),
+             "Take the strobes' positions, aims and powers from this rig from now on; lamps and "
+             "beams stay.");
 }
 
 // --- The reference ------------------------------------------------------------------------------
@@ -287,7 +287,7 @@ struct Traced {
     int width_px = 0;
     bool has_signals = true;
     std::vector<double> lambda_nm;
-    std::vector<double> planes;  // R, G, B if asked for, then one a wavelength
+    std::vector<double> planes;  // R, G, B if requested, then one per wavelength
     std::vector<unsigned char> on_edges;
 
     [[nodiscard]] std::size_t pixels() const {

@@ -28,7 +28,7 @@ void set_key(RigText& text, const std::string& key, nb::handle value) {
     } else if (nb::try_cast(value, numbers)) {
         text.set(key, numbers);
     } else {
-        throw InputError("{}: found {}; allowed: a number, a text, a list of numbers, or None",
+        throw InputError("{}: found {}; allowed: a number, a string, a list of numbers, or None",
                          key,
                          nb::cast<std::string>(nb::repr(value)));
     }

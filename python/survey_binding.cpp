@@ -85,7 +85,7 @@ struct CorrectedArray {
     PerChannel gain{};
 };
 
-// As `aphotic correct` does an image of a survey, or the survey of this image alone.
+// As `aphotic correct` corrects an image of a survey, or of a survey with this image only.
 Correction correction_of(const RawImage& raw,
                          const RigLightmap& light,
                          const CorrectOptions& options) {
@@ -97,7 +97,7 @@ Correction correction_of(const RawImage& raw,
     }
     if (options.gain) {
         correction.gain = *options.gain;
-        // Of a gain by itself nobody knows how much light the middle has.
+        // With a given gain, how much light the median has is unknown.
         if (!options.middle) correction.limit = {.share = options.limit.share};
         return correction;
     }
@@ -105,7 +105,7 @@ Correction correction_of(const RawImage& raw,
         middle_quotient(raw, light.map, options.levels, options.limit.share);
     for (std::size_t c = 0; c < kChannels; ++c) {
         if (!(quotient[c] > 0.0))
-            throw InputError("raw: found no light and map in every channel; allowed: with a gain");
+            throw InputError("raw: found a channel without light or map; allowed: with a gain");
         correction.gain[c] = correction.middle[c] / quotient[c];
     }
     return correction;
@@ -116,7 +116,7 @@ CorrectedArray corrected_array(RawImage raw,
                                const CorrectOptions& options) {
     constexpr int kMostEdge_px = 1000;
     require_range("edge_px", options.edge_px, 0, kMostEdge_px);
-    require_size(raw, light.map.width_px, light.map.height_px, "as the map has");
+    require_size(raw, light.map.width_px, light.map.height_px, "like the map");
     const Correction correction = correction_of(raw, light, options);
     CorrectedArray result{.image = corrected(std::move(raw), light.map, correction),
                           .gain = correction.gain};
@@ -211,7 +211,7 @@ struct Fitted {
     std::vector<Skipped> skipped;
 };
 
-// As the command says it on standard error.
+// As the command prints it on standard error.
 void warn_of(const Fitted& fitted) {
     const nb::object warn = nb::module_::import_("warnings").attr("warn");
     for (const Skipped& one : fitted.skipped)
@@ -337,17 +337,17 @@ void bind_fit(nb::module_& module) {
         .def_ro("start", &FittedNumber::start)
         .def_ro("value", &FittedNumber::value)
         .def_ro("error", &FittedNumber::error)
-        .def_ro("prior", &FittedNumber::spread, "What it may be off by beforehand.")
+        .def_ro("prior", &FittedNumber::spread, "Its standard deviation before the fit.")
         .def_ro("is_determined", &FittedNumber::is_determined);
     nb::class_<Fitted>(module, "Fit", "The rig that explains a survey.")
         .def_prop_ro("numbers", [](const Fitted& fitted) { return fitted.result.numbers; })
         .def_prop_ro("not_determined",
                      not_determined,
-                     "What the survey does not tell, and which altitude would.")
+                     "What the survey does not determine, and which altitude would.")
         .def_prop_ro(
             "unevenness",
             [](const Fitted& fitted) { return fitted.result.unevenness; },
-            "Expected of a correction by this rig over the survey's poses, rms.")
+            "Expected rms unevenness of a correction by this rig over the survey's poses.")
         .def_prop_ro("skipped", pairs_skipped, "Images that could not be used, and why.")
         .def_prop_ro("looks_wrong", pairs_wrong, "What looks wrong, and why.")
         .def_prop_ro(

@@ -74,7 +74,7 @@ std::string scientific(double value) {
     if (std::isnan(value)) return "not a number";
     if (std::isinf(value)) return value > 0.0 ? "∞" : std::string(kMinus) + "∞";
     if (value == 0.0) return "0";
-    // Through text, so that 9.999e-5 is rounded to 1.00e-4 before the exponent is read.
+    // Via text, so that 9.999e-5 is rounded to 1.00e-4 before the exponent is read.
     const std::string text = fmt::format("{:.2e}", value);
     const std::size_t split = text.find('e');
     const int exponent = exponent_of(text);

@@ -13,26 +13,26 @@
 
 namespace aphotic {
 
-// Safe between tags and in quoted attributes, of HTML and of XML. Line breaks and tabs become
+// Safe between tags and in quoted attributes, in HTML and in XML. Line breaks and tabs become
 // blanks; other control characters, which XML does not allow, become U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 // Three significant digits; 0, ∞ and "not a number" in words. 0.01 up to 1000 without a power.
 [[nodiscard]] std::string scientific(double value);
 
-// That of a number in fmt's {:e}: 3 of "1.5e+03".
+// The exponent of a number in fmt's {:e}: 3 for "1.5e+03".
 [[nodiscard]] int exponent_of(std::string_view text);
 
-// factor × 10^exponent; a factor of 1 is left out.
+// factor × 10^exponent; a factor of 1 is omitted.
 [[nodiscard]] std::string power_label(double factor, int exponent);
 
-// At most six significant digits, trailing zeros dropped.
+// At most six significant digits, without trailing zeros.
 [[nodiscard]] std::string plain(double value);
 
-// "1 frame", "2 frames", as counted() of base/words.h, with thousands set apart.
+// "1 frame", "2 frames", like counted() of base/words.h, with thousands separated.
 [[nodiscard]] std::string grouped_count(std::size_t count, std::string_view noun);
 
-// 1 392 640, with narrow blanks that do not break.
+// 1 392 640, with narrow non-breaking spaces.
 [[nodiscard]] std::string grouped(std::size_t count);
 
 }  // namespace aphotic

@@ -30,7 +30,7 @@ struct PageRow {
     PageTone tone = PageTone::None;
 };
 
-// The first column names the rows; a column without a heading is that of marks.
+// The first column names the rows; a column without a heading is for marks.
 struct PageTable {
     std::vector<std::string> columns{};
     std::vector<PageRow> rows{};
@@ -48,13 +48,13 @@ struct PagePicture {
     std::optional<std::pair<double, double>> ring{};  // around this share of its width and height
 };
 
-// Pictures beside each other, with one caption.
+// Pictures side by side, with one caption.
 struct PageFigure {
     std::vector<PagePicture> pictures{};
     std::string caption{};
 };
 
-// Beside each other: two in a row, or as many as there is room for.
+// Side by side: two in a row, or as many as fit.
 struct PageFigures {
     std::vector<PageFigure> figures{};
     bool are_small = false;
@@ -64,9 +64,9 @@ struct PagePlot {
     std::string svg{};
 };
 
-// What the marks of a plot or a map mean: drawings, or characters, and words.
+// The key of a plot or a map: drawings or characters, and words.
 struct PageKey {
-    std::string svg{};  // by stroke_key() and its like, or a character
+    std::string svg{};  // from stroke_key() and its like, or a character
     std::string words{};
 };
 using PageLegend = std::vector<PageKey>;
@@ -103,17 +103,17 @@ struct PageSection {
 
 struct Page {
     std::string kind{};   // such as "validation"
-    std::string title{};  // of the window; the heading where that is empty
+    std::string title{};  // of the window; the heading if empty
     std::string heading{};
     bool is_good = true;              // green or red
     std::string headline{};           // the answer in a sentence
     std::vector<std::string> said{};  // more on it
     std::vector<std::string> warnings{};
-    std::vector<PageSection> sections{};  // those without parts are left out
+    std::vector<PageSection> sections{};  // those without parts are omitted
 };
 
-// What a program's pages say of their making: once, before its first page. Pages of a library's own
-// caller say nothing.
+// The origin shown on a program's pages: set once, before its first page. Pages of a library's own
+// caller show nothing.
 struct PageOrigin {
     std::string command{};  // line
     std::string version{};
@@ -121,7 +121,7 @@ struct PageOrigin {
 };
 void set_page_origin(PageOrigin origin);
 
-// A file by itself, well-formed as HTML and as XML, that a browser lets neither run nor fetch
+// A self-contained file, well-formed as HTML and as XML, which a browser lets neither run nor fetch
 // anything. The same page and origin give the same bytes.
 [[nodiscard]] std::string page_html(const Page& page);
 

@@ -11,7 +11,7 @@ namespace aphotic {
 inline constexpr std::string_view kPng = "image/png";
 inline constexpr std::string_view kJpeg = "image/jpeg";
 
-// For src="..."; of a file's bytes.
+// For src="...", from a file's bytes.
 [[nodiscard]] std::string data_uri(std::string_view picture, std::string_view type = kPng);
 
 }  // namespace aphotic

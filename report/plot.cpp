@@ -15,7 +15,7 @@ namespace aphotic {
 namespace {
 
 constexpr double kWidth = 960.0;
-constexpr double kHeight = 560.0;  // of a panel with all around it
+constexpr double kHeight = 560.0;  // of a panel with its surroundings
 constexpr double kEdge = 24.0;
 constexpr double kPanelWidth = kWidth - kEdge - kAxisWidth;
 
@@ -77,7 +77,7 @@ SvgPanel panel_of(const Plot& plot) {
     return panel;
 }
 
-// A dot for each point, and its name above it to the right.
+// A dot for each point, with its name above and to the right.
 std::string named_points(const SvgPanel& panel, const PlotCurve& curve) {
     std::string svg =
         svg_dots(panel,
@@ -140,8 +140,8 @@ std::string plots_svg(std::span<const Plot> panels) {
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file) {
     if (file.extension() != ".svg") {
         throw InputError(
-            "{}: found a plot file that ends in '{}'; allowed: .svg, of which a "
-            "browser or rsvg-convert makes a PNG",
+            "{}: found a plot file that ends in '{}'; allowed: .svg (a browser or rsvg-convert "
+            "makes it a PNG)",
             file.string(),
             file.extension().string());
     }

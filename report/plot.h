@@ -16,7 +16,7 @@
 namespace aphotic {
 
 struct PlotCurve {
-    std::string label;  // in the legend; left out when empty
+    std::string label;  // in the legend; omitted if empty
     std::vector<double> x;
     std::vector<double> y;
     std::size_t tone = 0;  // of kTones
@@ -30,16 +30,16 @@ struct Plot {
     std::string y_label;
     std::vector<PlotCurve> curves;
     bool log_y = false;
-    // Thin dashed grey lines from bottom to top, behind the curves; none beyond the x axis.
+    // Thin dashed grey lines from bottom to top, behind the curves; none outside the x axis.
     std::vector<double> marks_x = {};
 };
 
-// The panels from top to bottom, as one <svg>. Throws InputError when there is no panel, or when no
+// The panels from top to bottom, as one <svg>. Throws InputError if there is no panel, or if no
 // point can be drawn in one of them.
 [[nodiscard]] std::string plots_svg(std::span<const Plot> panels);
 
-// The same in a file. Throws InputError for another extension than .svg too; RunError when the file
-// cannot be written. The file is whole or not there.
+// The same to a file. Throws InputError for an extension other than .svg too; RunError if the file
+// cannot be written. The file is complete or absent.
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file);
 
 }  // namespace aphotic

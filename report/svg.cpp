@@ -14,7 +14,7 @@ namespace {
 constexpr double kAxisFont_px = 13.0;
 
 double power_of_ten_below(double value) {
-    // The margin keeps 1000 from being taken for 999.999.
+    // The margin prevents 999.999 from being mistaken for 1000.
     return std::pow(10.0, std::floor(std::log10(value) + 1e-9));
 }
 
@@ -27,8 +27,8 @@ double nice_step(double span, int wanted) {
     return 10.0 * power;
 }
 
-// The exponent that the numbers of an axis share, such as -4 for errors of a few 1e-4; 0 for
-// numbers of ordinary size, which are written out.
+// The common exponent of an axis's numbers, such as -4 for errors of a few 1e-4; 0 for numbers of
+// ordinary size, which are written out.
 int unit_log10_of(double largest) {
     if (!(largest > 0.0)) return 0;
     const int exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
@@ -205,7 +205,7 @@ std::string svg_curve(const SvgPanel& panel,
     return fmt::format(R"(<path {} d="{}"/>)", style, path);
 }
 
-// Each dot is a line of no length, whose round ends are all that is seen of it.
+// Each dot is a line of zero length, of which only the round ends are visible.
 std::string svg_dots(const SvgPanel& panel,
                      std::span<const double> x,
                      std::span<const double> y,

@@ -15,7 +15,7 @@
 
 namespace aphotic {
 
-// Colours for curves and marks: each stands out from white and from every other.
+// Colours for curves and marks: each is distinct from white and from every other.
 inline constexpr std::array<std::string_view, 8> kTones{"#1f61a8",   // blue
                                                         "#cc332e",   // red
                                                         "#298c45",   // green
@@ -26,12 +26,12 @@ inline constexpr std::array<std::string_view, 8> kTones{"#1f61a8",   // blue
                                                         "#db4f9e"};  // pink
 inline constexpr std::array<std::size_t, 3> kChannelTones{1, 2, 0};  // of R, G, B
 
-// An attribute that gives an element this colour; beyond the last the first follows.
+// An attribute that gives an element this colour; after the last the first follows.
 [[nodiscard]] std::string svg_tone(std::size_t tone);
 
 struct SvgTick {
     double value = 0.0;
-    std::string label;  // empty: a grid line alone
+    std::string label;  // empty: only a grid line
 };
 
 struct SvgAxis {
@@ -39,10 +39,10 @@ struct SvgAxis {
     double last = 1.0;
     bool log = false;
     std::vector<SvgTick> ticks{};
-    int unit_log10 = 0;   // the labels leave out this power of ten, which the title carries
+    int unit_log10 = 0;   // the labels omit this power of ten, which the title has
     std::string title{};  // without one, the ticks have no labels either
 
-    // 0 at first, 1 at last; NaN where there is no logarithm.
+    // 0 at first, 1 at last; NaN where the logarithm does not exist.
     [[nodiscard]] double fraction(double value) const;
 
     // Such as "e / 10⁻⁴".
@@ -59,7 +59,7 @@ struct SvgAxis {
 // are labelled when there are no more than most_labels, else powers of ten.
 [[nodiscard]] SvgAxis log_axis(double least, double most, int most_labels = 7);
 
-// The least of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not under the value.
+// The least of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is at least the value.
 [[nodiscard]] double round_up(double value);
 
 // Of the finite values that were included.
@@ -88,11 +88,11 @@ struct SvgPanel {
     [[nodiscard]] double bottom() const { return top + height; }
 };
 
-// What axes with titles take to the left of the panel at least, and below it.
+// The least space that titled axes take to the left of the panel, and below it.
 inline constexpr double kAxisWidth = 86.0;
 inline constexpr double kAxisHeight = 44.0;
 
-// Grid, frame, and of each axis with a title the labels and the title: below, and to the left.
+// Grid, frame, and for each axis with a title the labels and the title: below, and to the left.
 [[nodiscard]] std::string svg_axes(const SvgPanel& panel);
 
 // style: the CSS class, and further attributes if any, as in  class="thin" id="a".
@@ -114,13 +114,13 @@ enum class SvgAnchor { Start, Middle, End };
 [[nodiscard]] std::string svg_text(
     double x_px, double y_px, SvgAnchor anchor, std::string_view style, std::string_view text);
 
-// About how wide a text is in a sans-serif face: what is kept free for it.
+// The approximate width of a text in a sans-serif face, for layout.
 [[nodiscard]] double text_width(std::string_view text, double font_px);
 
-// An attribute that makes the text smaller where it would be wider than the room.
+// An attribute that makes the text smaller if it is wider than the room.
 [[nodiscard]] std::string svg_fit(std::string_view text, double font_px, double room);
 
-// A whole <svg> of the elements, which a page's style may scale. name: what a screen reader says.
+// A whole <svg> of the elements, which a page's style may scale. name: for screen readers.
 [[nodiscard]] std::string svg_drawing(std::string_view id,
                                       std::string_view name,
                                       double width,

@@ -45,7 +45,7 @@ std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera) {
 
 double port_reach_m(const Rig& rig) {
     if (!rig.camera.port) return 0.0;
-    // Rays run farthest out at the corners, and a bit farther in blue or red than in between.
+    // Rays reach farthest at the corners, and slightly farther in blue or red than between.
     constexpr double kRoom = 1.05;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     double reach_m = 0.0;
@@ -140,15 +140,15 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     const double height_m = height_above(floor, strobe.position_m);
     if (height_m < kLeastDistance_m) {
         throw InputError(
-            "strobe '{}' stands {} m {} the sea floor; allowed: at least {} m over it",
+            "strobe '{}' is {} m {} the sea floor; allowed: at least {} m above it",
             strobe.name,
             height_m < 0.0 ? fmt::format("{:.4f}", -height_m) : at_most_text(height_m, 4),
-            height_m < 0.0 ? "under" : "over",
+            height_m < 0.0 ? "below" : "above",
             kLeastDistance_m);
     }
     for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
         if (height_above(floor, lamp_m) > 0.0) continue;
-        throw InputError("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
+        throw InputError("strobe '{}' has a lamp at or below the sea floor, {:.4f} m below it",
                          strobe.name,
                          -height_above(floor, lamp_m));
     }

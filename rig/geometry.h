@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Geometry of a rig as the scene generator needs it: the floor, the rays that the pixels look
-// along, the lamps that an emitter is made of, and the way into POV-Ray's frame.
+// Geometry of a rig for the scene generator: the floor, the pixels' rays, the lamps of an emitter,
+// and the transformation to POV-Ray's frame.
 //
 // Sled frame: x forward, y starboard, z down, origin at the entrance pupil, metres. The world's
 // downward direction, seen from a sled with pitch p (bow up) and roll q (starboard down), is
@@ -35,22 +35,22 @@ struct Plane {
 // Height of a point above the floor, measured along its normal [m].
 [[nodiscard]] double height_above(const Plane& floor, const Eigen::Vector3d& point_m);
 
-// The ray in water of the point (column, row) of the image: rig/camera/lens.h's, through
+// The ray in water for the point (column, row) of the image: rig/camera/lens.h's, through
 // rig/camera/port.h.
 [[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
 
-// Corners of the image, as (column, row), of which one is as far from the axis as any: one of them
-// where they are all alike.
+// Corners of the image, as (column, row), one of which is as far from the axis as any point: a
+// single one if all are alike.
 [[nodiscard]] std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera);
 
 // How far behind the pupil's place, along a ray of the image, the water may begin [m].
 [[nodiscard]] double port_reach_m(const Rig& rig);
 
-// Distance along the ray to the plane [m], or nothing when the ray does not come down on it.
+// Distance along the ray to the plane [m], or empty if the ray does not reach it.
 [[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
 
-// What the image sees of the floor, on an even grid of `side` x `side` points from corner to
-// corner, row by row; nothing where it sees none.
+// The floor points that the image sees, on an even grid of `side` x `side` points from corner to
+// corner, row by row; empty where it sees no floor.
 struct FloorSample {
     Eigen::Vector3d point_m;
     double camera_leg_m;  // in water
@@ -58,10 +58,10 @@ struct FloorSample {
 [[nodiscard]] std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig,
                                                                     std::size_t side);
 
-// From a strobe's position to the farthest place that its light comes from [m].
+// From a strobe's position to the farthest point that emits its light [m].
 [[nodiscard]] double emitter_reach_m(const Strobe& strobe);
 
-// How many lamps an emitter is made of, across x along.
+// The number of lamps of an emitter, across x along.
 struct LampGrid {
     int across = 1;
     int along = 1;
@@ -89,17 +89,17 @@ inline constexpr double kLampSpacing = 0.011;
 // K at the most attenuated of the wavelengths.
 [[nodiscard]] double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm);
 
-// Centres of the grid's cells [m], along and across as the beam's frame has them.
+// Centres of the grid's cells [m], along and across as in the beam's frame.
 [[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
 
-// How far off what it lights a strobe must stand [m].
+// The least distance of a strobe from what it lights [m].
 inline constexpr double kLeastDistance_m = 0.001;
 
-// Throws InputError, which names the strobe, unless it stands so high over the floor and all of its
-// lamps are over it: an emitter may reach under it.
+// Throws InputError, which names the strobe, unless its height above the floor is sufficient and
+// all of its lamps are above it: an emitter may extend below.
 void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
 
-// [rad], of directions of any length.
+// [rad], for directions of any length.
 [[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 [[nodiscard]] inline Eigen::Vector3d to_povray(const Eigen::Vector3d& sled) {

@@ -9,8 +9,8 @@
 
 #include <vector>
 
-// Each function names every field of what it tells of: where there is a further one, it does not
-// compile until someone has thought of it here.
+// Each function names every field of its struct: with a new field it does not compile until someone
+// has considered it here.
 
 namespace aphotic {
 
@@ -22,7 +22,7 @@ std::string vector_text(const Eigen::Vector3d& v) {
     return fmt::format("{} {} {}", v.x(), v.y(), v.z());
 }
 
-// A mesh may be long: what it holds is told by its digest.
+// A mesh may be long, so its contents are given by its digest.
 std::string mesh_text(const Mesh& mesh) {
     const auto& [vertices_m, triangles] = mesh;
     std::string text;
@@ -84,7 +84,7 @@ void add_strobe(const Strobe& strobe, Signature& all) {
     all[key + " emitter"] = fmt::format("{} x {} m", across_m, along_m);
 }
 
-// Of the strobes or objects, whose sources and materials frames know by their order.
+// For the strobes or objects, whose sources and materials frames know by their order.
 template <typename Named>
 std::string order_of(const std::vector<Named>& things) {
     std::vector<std::string> names;
@@ -102,8 +102,8 @@ void add_object(const Object& object, Signature& all) {
 }  // namespace
 
 Signature geometry_signature(const Rig& rig) {
-    // A user's own scene is told by its files (spectral/manifest.h). The mounting is of the
-    // navigation: frames are of the camera's own pose.
+    // A user's scene is identified by its files (spectral/manifest.h). The mounting belongs to the
+    // navigation: frames show the camera's own pose.
     const auto& [title,
                  sled,
                  mounting,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All of a rig that decides where its light goes, whatever its colour: rigs of the same signature
-// differ in lamp spectra, powers, the water's losses, reflectances and the sensor at most. By key,
-// as words and numbers, each as short as reads back to the same.
+// Everything in a rig that determines where its light goes, whatever its colour: rigs of the same
+// signature differ at most in lamp spectra, powers, the water's losses, reflectances and the
+// sensor. By key, in words and numbers with the fewest digits that read back to the same.
 //
-// Put together of the parts' own signatures: beam, port, lens, the water's index, which bends rays
-// behind a port. Every field of the rig is visited, so that a new one does not compile before it is
-// said whether frames depend on it.
+// Composed of the parts' own signatures: beam, port, lens, and the water's index, which bends rays
+// behind a port. Every field of the rig is visited, so that a new one does not compile until it is
+// decided whether frames depend on it.
 #pragma once
 
 #include "rig/rig.h"

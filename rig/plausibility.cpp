@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// What one of it is in the key's own unit.
+// One of this unit in the key's own unit.
 struct Unit {
     std::string_view name;
     double factor = 1.0;
@@ -74,7 +74,7 @@ const std::vector<Usual>& all_usual() {
     return kUsual;
 }
 
-// A number of the rig's file, where it stands.
+// A number of the rig's file, and its position.
 struct Place {
     std::string key;      // strobe[1].position_m
     std::string pattern;  // strobe[].position_m
@@ -117,7 +117,7 @@ const Usual* usual_of(std::string_view pattern) {
     return found == all_usual().end() ? nullptr : &*found;
 }
 
-// Quarter turns and their halves, as radians have them.
+// Quarter turns and their halves, in radians.
 std::optional<std::string> doubt_of_turn(double degrees) {
     constexpr double kRounding = 2e-3;  // of 1.57 and 1.5708
     const double eighths = std::abs(degrees) / (0.5 * kHalfPi);
@@ -125,7 +125,7 @@ std::optional<std::string> doubt_of_turn(double degrees) {
         std::abs(eighths - std::round(eighths)) * 0.5 * kHalfPi > kRounding) {
         return std::nullopt;
     }
-    return fmt::format("found {:g}, a part of pi; {:.4g} if that is in radians",
+    return fmt::format("found {:g}, a fraction of pi; {:.4g} if that is in radians",
                        degrees,
                        degrees * kDegreesPerRadian);
 }
@@ -151,8 +151,8 @@ class Doubter {
 
     const Rig& rig_;
     std::vector<Doubt> doubts_;
-    std::vector<std::set<std::string>> more_;  // of each doubt: the keys that it stands for
-    std::vector<std::string> patterns_;        // of each doubt
+    std::vector<std::set<std::string>> more_;  // for each doubt: the keys that it covers
+    std::vector<std::string> patterns_;        // for each doubt
     std::vector<std::pair<Place, double>> tilts_;
 };
 
@@ -161,7 +161,7 @@ int source_line(const toml::node* node) {
 }
 
 void Doubter::add(const Place& place, std::string what) {
-    // Strobes that are written alike are wrong alike: one line tells it.
+    // Strobes with the same mistake share one line.
     const auto same = std::ranges::find(patterns_, place.pattern);
     if (same != patterns_.end()) {
         more_[static_cast<std::size_t>(same - patterns_.begin())].insert(place.key);
@@ -228,7 +228,7 @@ double view_rad(const Camera& camera, double focal_length_m, double pixel_pitch_
     return 2.0 * std::atan(half_m / focal_length_m);
 }
 
-// Of focal length and pitch only the ratio counts, and so only the field of view shows it.
+// Only the ratio of focal length and pitch matters, so only the field of view reveals it.
 void Doubter::judge_view(const toml::table& root) {
     if (root.at_path("camera.fov_deg")) return;
     const Camera& camera = rig_.camera;
@@ -284,8 +284,8 @@ void Doubter::judge_view(const toml::table& root) {
     }
     const std::string path = "camera." + key;
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
-        fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a view of {:.4g} "
-                    "degrees from corner to corner; usual: {:g} to {:g}{}",
+        fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a field of view "
+                    "of {:.4g} degrees from corner to corner; usual: {:g} to {:g}{}",
                     1e3 * f_m,
                     1e6 * pitch_m,
                     view * kDegreesPerRadian,
@@ -301,13 +301,14 @@ void Doubter::judge_levels(const toml::table& root) {
     if (*readout.black_level_dn <= kMostShare * *readout.white_level_dn) return;
     const std::string path = "camera.black_level_dn";
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
-        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g} (light needs the "
-                    "room between them)",
+        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g} (the signal needs the "
+                    "range between them)",
                     *readout.black_level_dn,
                     *readout.white_level_dn));
 }
 
-// Nobody aims all strobes of a sled a degree inward; in radians that is up to a right angle.
+// Nobody aims all strobes of a sled a degree inward; in radians the same numbers reach a right
+// angle.
 void Doubter::judge_tilts() {
     constexpr double kLeast = 5.0 * kRadiansPerDegree;
     const auto may_be_radians = [](const auto& tilt) {
@@ -318,14 +319,15 @@ void Doubter::judge_tilts() {
     for (const auto& [place, tilt] : tilts_) {
         if (!is_tilted(std::pair(place, tilt))) continue;
         add(place,
-            fmt::format("found {:g}; usual: 0, or some degrees to 90; {:.4g} if that is in radians",
-                        tilt,
-                        tilt * kDegreesPerRadian));
+            fmt::format(
+                "found {:g}; usual: 0, or a few degrees to 90; {:.4g} if that is in radians",
+                tilt,
+                tilt * kDegreesPerRadian));
     }
 }
 
 void Doubter::judge_cones(const toml::table& root) {
-    constexpr double kLeastSum = 50.0;  // per cent, of which some part may be left out
+    constexpr double kLeastSum = 50.0;  // per cent, with some part possibly missing
     constexpr double kMostSum = 150.0;
     std::set<std::string> done;
     for (const Strobe& strobe : rig_.strobes) {
@@ -374,8 +376,9 @@ void Doubter::judge_beam_tables() {
     }
 }
 
-// Red, where water itself takes most and what is in it adds little: nothing is clearer than pure
-// water. All must be out of range, as by a unit; one knot may be anything.
+// Red, where water itself absorbs most and its constituents add little: nothing is clearer than
+// pure water. All knots must be out of range, as with a wrong unit; a single one may have any
+// value.
 void Doubter::judge_absorption(const toml::table& root) {
     struct Pure {
         double lambda_nm;
@@ -411,8 +414,7 @@ void Doubter::judge_absorption(const toml::table& root) {
         fix = fmt::format("; {:.4g}/m if the table is in {}", per_m * unit.factor, unit.name);
     }
     add({.key = "water.absorption", .pattern = "water.absorption", .line = source_line(node)},
-        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g} and more, which pure water has, to "
-                    "{:.3g}{}",
+        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g}, which pure water has, to {:.3g}{}",
                     per_m,
                     lambda_nm,
                     pure_per_m,
@@ -420,7 +422,7 @@ void Doubter::judge_absorption(const toml::table& root) {
                     fix));
 }
 
-// What a strobe does to the floor in view.
+// A strobe's effect on the floor in view.
 struct StrobeView {
     bool has_light = false;
     double nearest_rad = std::numbers::pi;  // from its axis to the view
@@ -428,7 +430,7 @@ struct StrobeView {
 
 constexpr std::size_t kSideOfView = 33;
 
-// How far apart, seen from the strobe, neighbours of the grid are.
+// Angles between neighbouring grid points, seen from the strobe.
 double spacing_rad(const std::vector<std::optional<FloorSample>>& samples,
                    std::size_t i,
                    const Vector3d& from_m) {
@@ -498,7 +500,7 @@ void Doubter::judge_light() {
         const double above_deg =
             std::asin(std::clamp(-strobe.axis.dot(down), -1.0, 1.0)) * kDegreesPerRadian;
         const StrobeView view = view_of_strobe(strobe, samples);
-        // Objects are beyond this: they may stand in any light.
+        // Objects are not considered: they may be in any light.
         if (!rig_.objects.empty() || (view.has_light && above_deg <= 0.0)) continue;
         if (!view.has_light) ++dark;
         const std::string seen = view.has_light ? "" : ", and lights nothing that the camera sees";

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rig: what a rig file says, in SI, every value checked. Plain data, no behaviour.
+// The rig: the contents of a rig file, in SI, every value checked. Plain data, no behaviour.
 //
 // Sled frame, the marine one: x forward, y starboard, z down; the origin is the camera's
 // entrance pupil, and the camera looks along +z with its top row forward and its right column
 // starboard. Metres and radians; wavelengths stay in nanometres.
 //
-// Both renderers start from this struct and share nothing else of geometry or light.
+// Both renderers start from this struct and share no other geometry or light.
 #pragma once
 
 #include "rig/beam/beam.h"
@@ -49,7 +49,7 @@ struct Emitter {
 struct Strobe {
     std::string name;
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector, the way it shines
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector along which it shines
     Beam beam;
     Spectrum spectrum;  // Phi(lambda) at power 1
     double power = 1.0;
@@ -68,7 +68,7 @@ struct Box {
     Eigen::Vector3d most_m = Eigen::Vector3d::Zero();
 };
 
-// Flat triangles, each lit on the side that the camera sees, whichever way round its corners go.
+// Flat triangles, each lit on the side that the camera sees, whatever the order of its corners.
 struct Mesh {
     std::vector<Eigen::Vector3d> vertices_m;
     std::vector<std::array<int, 3>> triangles;  // of vertices
@@ -76,7 +76,7 @@ struct Mesh {
 
 using Shape = std::variant<Sphere, Box, Mesh>;
 
-// A solid thing: opaque, it reflects as the floor does and casts shadows.
+// A solid object: opaque, it reflects like the floor and casts shadows.
 struct Object {
     std::string name;
     Shape shape;
@@ -85,9 +85,9 @@ struct Object {
     double phong_size = 40.0;
 };
 
-// A table or mesh of the user's that the rig file names.
+// A user's table or mesh that the rig file names.
 struct RigFile {
-    std::string name;  // as the rig file has it
+    std::string name;  // as in the rig file
     std::string sha256;
 };
 
@@ -101,7 +101,7 @@ struct Rig {
     std::vector<Strobe> strobes;
     std::vector<Spectrum> materials{};  // further reflectances that the plan serves
     std::vector<Object> objects{};
-    std::filesystem::path scene{};  // a POV-Ray scene of the user's own; none: floor and objects
+    std::filesystem::path scene{};  // a user's POV-Ray scene; empty: floor and objects
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
     std::string toml{};  // the rig file as it was read
     std::vector<RigFile> files{};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the scene generator concludes from the shape of an object: how far it reaches, how near it
-// comes, and whether it can matter to the image. It follows no light: each answer is a bound on the
-// safe side, from the object's ball and bounds.
+// What the scene generator derives from an object's shape: how far it reaches, how close it comes,
+// and whether it can affect the image. It traces no light: each answer is a conservative bound from
+// the object's ball and bounds.
 //
 // bounds          the smallest box along the sled's axes that holds the object
 // ball            the sphere about that box; a lamp at d sees it within asin(R/d) of its middle
@@ -21,18 +21,18 @@ namespace aphotic {
 
 [[nodiscard]] double distance_m(const Shape& shape, const Eigen::Vector3d& point_m);
 
-// Whether the point is inside. A mesh holds what it surrounds, whichever way its triangles turn: a
-// half line from within leaves it one time more often than it enters. Of an open mesh it is so
-// from some places.
+// Whether the point is inside. A mesh contains what it encloses, whatever its triangles'
+// orientation: a half line from inside leaves it one time more often than it enters. An open mesh
+// does so from some places.
 [[nodiscard]] bool holds(const Shape& shape, const Eigen::Vector3d& point_m);
 
-// A no is sure, a yes may be wrong.
+// False is certain, true may be wrong.
 [[nodiscard]] bool may_be_in_view(const Rig& rig, const Object& object);
 // By the strobe's own beam, or by a part of it.
 [[nodiscard]] bool may_light(const Strobe& strobe, const Beam& beam, const Object& object);
 
-// From a point of the strobe to the nearest thing in view that it may light, the floor under it
-// among them [m].
+// From a point of the strobe to the nearest thing in view that it may light, including the floor
+// below it [m].
 [[nodiscard]] double least_throw_m(const Rig& rig,
                                    const Strobe& strobe,
                                    const Eigen::Vector3d& lamp_m);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A band: what plugin/include/aphotic.inc must be told of the wavelengths of a frame, one in each
-// channel, before it is included. Everything that depends on wavelength reaches a scene this way.
+// A band: what plugin/include/aphotic.inc must know about a frame's wavelengths, one in each
+// channel, before it is included. Everything that depends on wavelength enters a scene this way.
 #pragma once
 
 #include "scene_gen/sdl.h"
@@ -18,17 +18,17 @@ namespace aphotic {
 // The version of aphotic.inc for which bands are written.
 inline constexpr int kBandVersion = 1;
 
-// A spectrum as scenes call it.
+// A spectrum under its name in the scene.
 struct NamedSpectrum {
     std::string name;
     Spectrum spectrum;
 };
 
-// What a scene can call it: sdl_letters, as many as aphotic.inc takes.
+// The name that a scene can use: sdl_letters, as many as aphotic.inc allows.
 [[nodiscard]] std::string scene_name(std::string_view name);
 
-// Each spectrum once, under its short name as a scene can have it; of different ones with the same
-// name, the later have a number behind it.
+// The distinct spectra, under their short names as a scene can write them; if different ones share
+// a name, the later get a number.
 [[nodiscard]] std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra);
 
 // The name under which it stands there.
@@ -40,14 +40,13 @@ struct GlassIndex {
     double index;
 };
 
-// Of a frame that shows what the water scatters into the view, and nothing else: everything is
-// black.
+// For a frame that shows only the veil: everything else is black.
 struct BandScattering {
     Channels per_m{};                    // of light that goes as the phase function says
     std::optional<double> eccentricity;  // Henyey and Greenstein's g; none: Rayleigh's
     int samples = 1;
     double sight_m = 0.0;     // up to which a ray is sampled as one
-    bool cuts_edges = false;  // but for the edges of cones
+    bool cuts_edges = false;  // apart from the edges of cones
 };
 
 struct Band {

@@ -14,7 +14,7 @@ namespace aphotic {
 
 namespace {
 
-// Behind an operator.
+// Parenthesised, to follow an operator.
 std::string operand_sdl(double value) {
     return value < 0.0 ? fmt::format("({})", sdl_number(value)) : sdl_number(value);
 }
@@ -49,7 +49,7 @@ std::string up_to_sdl(const std::string& angle, double most, const std::string& 
     return fmt::format("select({} - {}, 0, {})", sdl_number(most), angle, value);
 }
 
-// 0 where the table ends, less what no direction can be beyond: each test costs time.
+// 0 past the table's end, without the tests that no direction needs: each costs time.
 std::string within_sdl(const BeamTable& table, const std::string& value) {
     const std::vector<double>& v = table.vertical_rad;
     const std::vector<double>& h = table.horizontal_rad;
@@ -112,7 +112,7 @@ std::string table_value_sdl(const BeamTable& table, const std::string& name) {
         name);
 }
 
-// In units of the disc, of slopes x/z and y/z. A sharp image is the whole disc within the
+// In units of the disc, for slopes x/z and y/z. A sharp image is the whole disc within the
 // rectangle's slopes.
 std::string optics_value_sdl(const BeamOptics& optics) {
     const double radius_m = 0.5 * optics.aperture_m;
@@ -151,7 +151,7 @@ std::string cones_value_sdl(const Beam& beam) {
     return fmt::format("select(z, 0, 0, {})", sum);
 }
 
-// The pattern of the lamp's frame, in air if it was measured there.
+// The pattern in the lamp's frame, in air if it was measured there.
 std::string bare_functions_sdl(const Beam& beam, const std::string& name) {
     if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) {
         return planes_sdl(*table, name) + function_sdl(name,
@@ -235,7 +235,7 @@ std::string beam_sdl(const Beam& beam) {
 std::string pattern_functions_sdl(const Beam& beam, const std::string& name) {
     std::string sdl;
     std::string last = name;
-    // From the outside inwards, each is named by what is still to come.
+    // From the outside inwards, each named by what is still to come.
     const bool is_turned = beam.turn_rad != 0.0;
     if (is_turned) last = name + "_Turned";
     const std::string bare = beam.window ? name + "_Bare" : last;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam in POV-Ray's words, for Aphotic_Strobe of plugin/include/aphotic.inc.
+// A beam in POV-Ray's language, for Aphotic_Strobe of plugin/include/aphotic.inc.
 //
 // Cones in water are spotlights: an array of {half angle in degrees, share of the lamp's flux} for
-// each, with its exponent and the degrees of its soft edge where one has them. All else, a pattern
-// or whatever shines through a window, is a point light in a filter shell, whose transmittance is a
+// each, with its exponent and the degrees of its soft edge if it has them. Anything else, a pattern
+// or any beam through a window, is a point light in a filter shell, whose transmittance is a
 // function of the direction:
 //
 //   table    bilinear in its own angles, its nodes all in one spline: plane after plane
@@ -18,16 +18,16 @@
 
 namespace aphotic {
 
-// Lights of the scene, for each of the strobe's lamps.
+// Lights in the scene for each of the strobe's lamps.
 [[nodiscard]] std::size_t light_count(const Beam& beam);
 
 [[nodiscard]] bool needs_shell(const Beam& beam);
 
-// The array, of a beam with lights and without a shell.
+// The array, for a beam with lights and without a shell.
 [[nodiscard]] std::string beam_sdl(const Beam& beam);
 
-// Of one with a shell: functions whose names begin with this one, and the last of which is it, and
-// what makes the beam of it.
+// For one with a shell: functions whose names begin with this one, the last of which has it, and
+// the call that makes the beam from it.
 [[nodiscard]] std::string pattern_functions_sdl(const Beam& beam, const std::string& name);
 [[nodiscard]] std::string pattern_sdl(const Beam& beam, const std::string& name);
 

@@ -17,19 +17,19 @@ using Eigen::Vector3d;
 
 namespace {
 
-// The points of a column or row of the grid lie where POV-Ray looks for them, and have the ray of
-// where a pixel sees.
+// The points of a grid column or row are where POV-Ray looks for them, and have the ray of the
+// place that a pixel sees.
 struct Line {
     double at_px;
     double sees_px;
 };
 
 // From the first pixel to the last, where POV-Ray looks for all of the last one's rays at once.
-// Antialiased pixels come no nearer to their borders than an 18th of a pixel.
+// Antialiased pixels come no closer to their borders than an 18th of a pixel.
 std::vector<Line> lines_along(int pixels, int cells) {
     constexpr double kNoRay = 1.0 / 32.0;
     constexpr double kBeyond = 0.25;
-    constexpr double kBeforeFirst = 0.09;  // POV-Ray's table of faces has no place for u <= -0.1
+    constexpr double kBeforeFirst = 0.09;  // POV-Ray's table of faces has no entry for u <= -0.1
     const double last = pixels - 1.0;
     std::vector<Line> lines;
     if (pixels > 1) lines.push_back({std::max(0.0, 0.5 - kBeforeFirst * pixels), 0.0});
@@ -52,7 +52,7 @@ struct Grid {
     [[nodiscard]] std::size_t faces() const { return 2 * (columns.size() - 1) * (rows.size() - 1); }
 };
 
-// Of square cells. Counted from below, as POV-Ray does, the last row is the image's first.
+// Of square cells. POV-Ray counts from below, so the last row is the image's first.
 Grid grid_of_cells(const Camera& camera, int cells) {
     const auto along = [&](int pixels) {
         const double share = double(pixels) / std::max(camera.width_px, camera.height_px);
@@ -68,7 +68,7 @@ Grid grid_of_cells(const Camera& camera, int cells) {
     return grid;
 }
 
-// By how much the middles of the cells' edges and diagonals are off, at the most.
+// The largest error in the middles of the cells' edges and diagonals.
 double error_rad(const Camera& camera, const Grid& grid) {
     const Vector3d stretch(1.0, 1.0, grid.depth);
     double worst = 0.0;
@@ -95,7 +95,7 @@ double error_rad(const Camera& camera, const Grid& grid) {
 
 Grid grid_of(const Camera& camera) {
     constexpr int kFirstCells = 16;
-    // Inside a face a quadratic is off by up to 4/3 of what it is in the middles of its sides.
+    // Inside a face a quadratic is off by up to 4/3 of its error in the middles of its sides.
     constexpr double kOnSidesRad = 0.75 * kRayErrorRad;
     constexpr double kRoom = 1.02;  // errors fall with the square of the cells, but for so much
     const int longest = std::max(camera.width_px, camera.height_px);
@@ -107,7 +107,7 @@ Grid grid_of(const Camera& camera) {
     }
 }
 
-// Corners are in the order that POV-Ray leaves as it is. Others' first two it exchanges, and their
+// Corners are in the order that POV-Ray keeps. In any other it exchanges the first two, and their
 // normals only if these differ by 1e-5.
 std::string faces_sdl(const Grid& grid) {
     std::string faces;

@@ -15,7 +15,7 @@
 namespace aphotic {
 namespace {
 
-// Over these points of the range light is a straight line: dispersion bends it by some per cent.
+// Over these points of the range light is a straight line: dispersion bends it by a few per cent.
 constexpr int kGeometryPoints = 65;
 constexpr double kBlackShare = 1e-8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -84,7 +84,7 @@ struct RuleSignals {
     std::array<double, kChannels> found{};
 };
 
-// Nothing where the pixel shows no floor.
+// Empty if the pixel shows no floor.
 std::optional<RuleSignals> signals_of(const Rig& rig,
                                       double column,
                                       double row,
@@ -140,7 +140,7 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
         for (const RuleSignals& pixel : image) {
             if (!(pixel.right[c] > kBlackShare * brightest)) continue;
             const double off = std::abs(pixel.found[c] / pixel.right[c] - 1.0);
-            // What is no number is the largest of errors.
+            // NaN is the largest of errors.
             error[c] = std::isnan(off) ? kInfinite : std::max(error[c], kBetweenPixels * off);
         }
     }

@@ -21,10 +21,10 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::size_t kGridOfFloor = 33;  // points along each side of the image
-constexpr double kMarginView = 1.5;       // a point this far outside the image may still count
+constexpr double kMarginView = 1.5;       // a point this far outside the image still counts
 constexpr int kColourLimitLog2 = 120;     // colours are single precision: 2^128 overflows
 
-// How far another point of the same cell of the grid may lie, in angle, as seen from a place.
+// How far another point of the same grid cell may lie, in angle, seen from a place.
 double reach_rad(const std::vector<Vector3d>& neighbours_m,
                  const Vector3d& at_m,
                  const Vector3d& from_m) {
@@ -41,7 +41,7 @@ double widened_highlight(const Seafloor& floor, double angle_rad, double margin_
     return cos_angle > 0.0 ? floor.phong * std::pow(cos_angle, floor.phong_size) : 0.0;
 }
 
-// From the nearest of the strobe's lamps, taken for a grid of them.
+// From the strobe's nearest lamp, for a grid of them.
 double least_object_distance_m(const Strobe& strobe, const Object& object) {
     constexpr LampGrid kGridOfLamps{.across = 9, .along = 9};
     double least_m = std::numeric_limits<double>::infinity();
@@ -70,7 +70,7 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
         add_point(samples[index]->point_m, samples[index]->camera_leg_m, neighbours_of(index));
     }
     // A lamp close to the floor can peak between the grid's points: add its foot, as far from its
-    // neighbours as the nearest of the grid is from its own.
+    // neighbours as the nearest grid point is from its own.
     const Plane floor = floor_plane(rig.sled);
     for (const Strobe& strobe : rig.strobes) {
         const Vector3d foot_m =
@@ -99,7 +99,7 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
 void RadianceBound::add_point(const Vector3d& point_m,
                               double camera_leg_m,
                               const std::vector<Vector3d>& neighbours_m) {
-    // Behind a port the ray comes from beside the pupil.
+    // Behind a port the ray starts beside the pupil.
     constexpr double kPortMarginRad = 0.1;
     const Plane floor = floor_plane(rig_.sled);
     const Vector3d view = point_m.normalized();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How bright a frame will be, and by which power of two its light is scaled for it.
+// A bound of a frame's brightness, and the power of two that scales its light.
 //
 // POV-Ray's EXR holds half floats: relative step 2^-11 from 2^-14 to 65504, coarser below, inf
-// above. The light of each wavelength is multiplied by 2^e, chosen so that the brightest
-// pixel stays about 2^kTargetLog2 or a few octaves under it; the integrator divides it out again,
-// exactly. So a dark red wavelength uses the same digits as a bright blue one.
+// above. The light of each wavelength is multiplied by 2^e, chosen so that the brightest pixel is
+// at about 2^kTargetLog2 or a few octaves below; the integrator divides by it again, exactly. A
+// dark red wavelength thus uses the same digits as a bright blue one.
 //
 //   e = floor(kTargetLog2 - log2 L_max)
 //
@@ -14,9 +14,9 @@
 //        grid's step
 //        [unit of the lamp's spectrum / (m^2 sr)]
 //
-// An object counts with all that may light it at once, each strobe at its least distance, straight
-// on, and mirrored if the object has a highlight: more than any of its points can be, so that it
-// needs no grid.
+// An object counts with all strobes that may light it at once, each at its least distance, straight
+// on, and mirrored if the object has a highlight: more than any of its points can receive, so that
+// it needs no grid.
 //
 // The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
 #pragma once
@@ -34,7 +34,7 @@ class RadianceBound {
   public:
     explicit RadianceBound(const Rig& rig);
 
-    // Zero when no strobe lights anything in view at this wavelength.
+    // Zero if no strobe lights anything in view at this wavelength.
     [[nodiscard]] double at(double lambda_nm) const;
 
   private:
@@ -50,7 +50,7 @@ class RadianceBound {
         std::vector<Lit> lit;
     };
 
-    // neighbours_m: the next points of the grid, between which light may peak.
+    // neighbours_m: the neighbouring grid points, between which light may peak.
     void add_point(const Eigen::Vector3d& point_m,
                    double camera_leg_m,
                    const std::vector<Eigen::Vector3d>& neighbours_m);
@@ -60,9 +60,9 @@ class RadianceBound {
     std::vector<LitPoint> points_;
 };
 
-// e for a bound; brightest_colour is the largest colour value that the scene would hold at
-// e = 0, kept under POV-Ray's single-precision range. 0 for a bound of 0, and nothing beyond what a
-// manifest may hold (spectral/manifest.h).
+// e for a bound; brightest_colour is the largest colour value in the scene at e = 0, kept within
+// POV-Ray's single-precision range. 0 for a bound of 0, and never beyond a manifest's limit
+// (spectral/manifest.h).
 [[nodiscard]] int exposure_log2(double radiance_bound,
                                 double brightest_colour,
                                 int target_log2 = kTargetLog2);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which wavelengths share a frame, and with which refractive indices it is rendered.
+// Which wavelengths share a frame, and the refractive indices with which it is rendered.
 //
 // A frame has three channels, which POV-Ray never mixes, so three wavelengths share it. Behind a
-// dispersing port they may do so only when nearly equal: the indices are one number a frame, and a
-// wavelength that is rendered with another's is shifted, by
+// dispersing port they may do so only if nearly equal: a frame has one set of indices, and a
+// wavelength rendered with another's is shifted by
 //
 //   shift = |P(lambda_a) - P(lambda_b)| / |P(lambda_b) - P'(lambda_b)|     [pixel]
 //
 // P   where the ray of the image's corner meets the plane at the sled's altitude across the
 //     camera's axis            P'  the same, one pixel nearer to the image's middle
 //
-// Wavelengths next to each other share a frame as long as the first and the last are shifted
-// against each other by no more than a bound; it is rendered at the wavelength halfway.
+// Neighbouring wavelengths share a frame as long as the first and the last are shifted against each
+// other by no more than a bound; it is rendered at the wavelength halfway.
 #pragma once
 
 #include "rig/rig.h"

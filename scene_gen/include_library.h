@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The include files through which POV-Ray learns of water and strobes (plugin/include/), as texts:
-// aphotic.inc, its macros; aphotic_quick.inc, what it takes for a quick look without us. They are
-// written beside every set of scenes, so that plain povray finds them there.
+// The include files with water and strobes for POV-Ray (plugin/include/), as texts: aphotic.inc,
+// its macros; aphotic_quick.inc, its data for a quick look without aphotic. They are written next
+// to every set of scenes, where plain povray finds them.
 #pragma once
 
 #include <span>

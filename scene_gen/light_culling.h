@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a rig names or might hold and its scenes leave out, because it cannot change a pixel.
+// Parts of a rig that its scenes omit, because they cannot change a pixel.
 #pragma once
 
 #include "rig/rig.h"
@@ -15,13 +15,12 @@ struct Omission {
     std::string reason;
 };
 
-// is_user_scene: what stands in the water is not known here, so of strobes only what never shines
-// is left out.
+// is_user_scene: its contents are not known here, so only strobes that never shine are omitted.
 [[nodiscard]] std::vector<Omission> omissions(const Rig& rig, bool is_user_scene = false);
 
 // Whether light of the strobe's beam, or of a part of it, can fall on floor or on an object that
-// the image sees. The image is looked at in cells of a grid: a cell counts as lit when the beam may
-// reach any of it, so that a yes may be wrong at the beam's edge and a no is not.
+// the image sees. The image is examined in grid cells: a cell counts as lit if the beam may reach
+// any of it, so true may be wrong at the beam's edge and false is certain.
 [[nodiscard]] bool lights_the_view(const Rig& rig, const Strobe& strobe, const Beam& beam);
 
 }  // namespace aphotic

@@ -5,11 +5,11 @@
 // light/path_range.h.
 //
 // Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
-// change of light on the way from the middle wavelength's point to it, over the image. Diffuse
-// light and highlight, and lamps of different spectra, change by themselves, each counted by its
-// share. On objects, which turn away from the light and end, no such change is the largest: there
-// it counts up to kObjectTilt, growing with the shift of the image, and pixels where it is more are
-// among the edges, for which nothing is promised.
+// change of light from the middle wavelength's point to it, over the image. Diffuse light and
+// highlight, and lamps of different spectra, change independently, each weighted by its share. On
+// objects, which turn away from the light and end, no such change is the largest: there it counts
+// up to kObjectTilt, growing with the shift of the image, and pixels where it is more are among the
+// edges, for which nothing is promised.
 #pragma once
 
 #include "light/path_range.h"
@@ -25,12 +25,12 @@ namespace aphotic {
 inline constexpr double kObjectTilt = 0.05;
 
 // Places along the width or height of an image where the light behind a port is sampled [pixel]:
-// the middle of every pixel, or of kMostPlaces evenly from the first to the last. A beam's table
-// may be steep over an angle as narrow as its rows, which fewer places would miss.
+// the middle of every pixel, or kMostPlaces evenly from the first to the last. A beam's table may
+// be steep over an angle as narrow as its rows, which fewer places would miss.
 [[nodiscard]] std::vector<double> places_along(int pixels);
 inline constexpr int kMostPlaces = 65;
 
-// Lamps with the same spectrum are one, and so are materials.
+// Lamps with the same spectrum are merged, and so are materials.
 [[nodiscard]] LightFamily light_family(const Rig& rig);
 
 // The materials of the light that the rig shows and is planned for, in this order: the floor's, the
@@ -40,8 +40,8 @@ inline constexpr int kMostPlaces = 65;
 // At one wavelength, in the order of the rig's strobes and of materials_of().
 [[nodiscard]] SourceLight source_light(const Rig& rig, double lambda_nm);
 
-// The same family with one set of sources per strobe, in their order: for each the materials and,
-// where anything has a highlight, the bare lamp.
+// The same family with one set of sources per strobe, in their order: each material and, if
+// anything has a highlight, the bare lamp.
 [[nodiscard]] LightFamily light_family_by_strobe(const Rig& rig);
 
 }  // namespace aphotic

@@ -63,7 +63,7 @@ std::optional<Interval> within_cone(const Piece& piece,
     return lit;
 }
 
-// The piece, cut where it crosses a cone's edge that is a step.
+// The piece, cut where it crosses a cone's sharp edge.
 std::vector<Interval> between_steps(const Rig& rig,
                                     std::span<const Lamp> lamps,
                                     const Piece& piece,
@@ -89,7 +89,7 @@ std::vector<Interval> between_steps(const Rig& rig,
     return intervals;
 }
 
-// Those of all lamps, merged where they overlap.
+// The intervals of all lamps, merged where they overlap.
 std::vector<Interval> lit_intervals(const Rig& rig,
                                     std::span<const Lamp> lamps,
                                     const Piece& piece) {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What POV-Ray's media find of the veil along a ray, to know beforehand how far that is off.
+// The veil that POV-Ray's media find along a ray, to know its error beforehand.
 //
 // `method 2` with `intervals 1`, `jitter 0` and `samples N` is the midpoint rule of N samples, in
-// each interval of the ray that is lit: of a spotlight what its cone cuts out, of a point light all
-// of it, merged where they overlap. A cone's edge inside another's light would lie inside an
-// interval and err by the first order of 1/N, smooth light by the second. So surfaces that nobody
-// sees cut the ray at edges that are steps (plugin/include/aphotic.inc), unless the scene is a
-// user's, where they would bend rays in glass. Steps of tables and images, and behind windows, are
-// not cut.
+// each lit interval of the ray: for a spotlight what its cone cuts out, for a point light all of
+// it, merged where they overlap. A cone's edge inside another's light would lie inside an interval,
+// with an error of first order in 1/N; that of smooth light is second order. So invisible surfaces
+// cut the ray at sharp edges (plugin/include/aphotic.inc), unless the scene is a user's, where they
+// would bend rays in glass. Steps of tables and images, and behind windows, are not cut.
 //
-// Objects and their shadows are left out.
+// Objects and their shadows are omitted.
 #pragma once
 
 #include "light/veil.h"
@@ -25,16 +24,16 @@
 namespace aphotic {
 
 struct MediaSampling {
-    std::vector<PhaseFunction> lobes;  // in place of the water's phase functions
+    std::vector<PhaseFunction> lobes;  // instead of the water's phase functions
     int samples = 0;
-    // A ray is cut at this length, twice, four times and so on, each piece sampled by itself, up to
-    // the first from half of most_m on.
+    // A ray is cut at this length, twice, four times and so on, each piece sampled separately, up
+    // to the first cut past half of most_m.
     double sight_m = 0.0;
     double most_m = 0.0;
     bool cuts_edges = true;  // of cones
 };
 
-// By strobe, the samples as nodes, weights by lobe. lamps: what stands for each strobe's emitter.
+// By strobe, the samples as nodes, weights by lobe. lamps: the grid of each strobe's emitter.
 [[nodiscard]] std::vector<VeilNodes> media_samples(const Rig& rig,
                                                    std::span<const LampGrid> lamps,
                                                    const MediaSampling& sampling,

@@ -30,18 +30,18 @@ namespace {
 // POV-Ray's law 2/(1 + (d/f)^2) is 2 f^2/d^2 (1 - (f/d)^2 + ...): with f under a thousandth of
 // the least distance the inverse square holds to 1e-6.
 constexpr double kFadeShare = 1e-3;
-// A user's scene may hold anything: so it does from a millimetre on.
+// A user's scene may contain anything, down to a millimetre.
 constexpr double kUserFade_m = 0x1p-20;
 
-// Units between the surfaces of a port, at least: twice what aphotic.inc takes, and a millimetre of
-// glass stays in metres.
+// The least number of units between the surfaces of a port: twice what aphotic.inc needs, so that a
+// millimetre of glass stays in metres.
 constexpr double kPortClearance = 0x1p-10;
 
 double power_of_two_within(double most) {
     return std::exp2(std::floor(std::log2(most)));
 }
 
-// Wavelengths as they stand in file names: with as few decimals as tell all of them apart.
+// Wavelengths as in file names: with as few decimals as distinguish them all.
 std::vector<std::string> wavelength_labels(std::span<const PlannedWavelength> wavelengths) {
     constexpr int kMostDecimals = 6;
     std::set<double> distinct;
@@ -74,28 +74,28 @@ double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     return power_of_two_within(kFadeShare * least_throw_m(rig));
 }
 
-// Of the pinhole that POV-Ray has for the camera: half a pixel, at a distance of 1.
+// Of POV-Ray's pinhole for the camera: half a pixel, at a distance of 1.
 double half_pixel_slope(const Camera& camera) {
     const Pinhole pinhole = pinhole_about(camera);
     return 0.5 * pinhole.sensor_width_m / camera.width_px / pinhole.focal_length_m;
 }
 
-// No ray is farther from the normal of a flat port.
+// The largest angle of a ray from the normal of a flat port.
 double widest_off_normal_rad(const Camera& camera) {
     const double half_view =
         half_pixel_slope(camera) * std::hypot(camera.width_px, camera.height_px);
     return std::atan(half_view) + std::acos(std::min(1.0, camera.port->normal.z()));
 }
 
-// Between the surfaces round the pupil that POV-Ray has to find.
+// The least distance between the surfaces around the pupil that POV-Ray has to find.
 double least_clearance_m(const PortWindow& port) {
     const double room_m =
         port.dome ? port.dome->radius_m - port.dome->centre_m.norm() : port.distance_m;
     return std::min(room_m, port.thickness_m);
 }
 
-// What holds the glass around camera and pupil, in the sled's frame, as aphotic.inc has it. It is
-// wider than any ray can be at its faces: in glass, rays run steeper than in air.
+// The housing of glass, camera and pupil, in the sled's frame, as in aphotic.inc. It is wider than
+// any ray can be at its faces: rays in glass are steeper than in air.
 Eigen::AlignedBox3d housing(const Camera& camera) {
     constexpr double kRoom = 1.25;
     const PortWindow& port = *camera.port;
@@ -129,8 +129,7 @@ Eigen::AlignedBox3d housing(const Camera& camera) {
         block.max().z());
 }
 
-// Where there is no medium it is patience and memory that end: a scene of this many is 15 MB of
-// text.
+// Without a medium, time and memory are the limit: a scene of this many is 15 MB of text.
 constexpr std::size_t kMostLights = 100'000;
 
 void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) {
@@ -142,9 +141,8 @@ void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) 
     const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
     if (lights <= most) return;
     throw InputError(
-        "strobes: {} lights, one for every cone of every lamp; allowed: {}, "
-        "which is what POV-Ray takes in {}. Fewer lamps stand for an "
-        "emitter with --emitter-lamps",
+        "strobes: found {} lights, one for every cone of every lamp; allowed: {}, POV-Ray's limit "
+        "in {}. --emitter-lamps models an emitter with fewer lamps",
         lights,
         most,
         rig.water.is_clear() ? "clear water" : "water");
@@ -155,9 +153,9 @@ struct PlacedLamp {
     Vector3d at_m;
 };
 
-// From each lamp with a shell to any other, the least.
+// The least distance from a lamp with a shell to any other.
 double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
-    // From here on they may as well be one lamp, and scenes cannot tell them apart.
+    // Closer lamps may as well be one, and scenes cannot distinguish them.
     constexpr double kOnePlace_m = 1e-6;
     std::vector<PlacedLamp> lamps;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
@@ -174,8 +172,8 @@ double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
             least_m = std::min(least_m, apart_m);
             if (apart_m > kOnePlace_m) continue;
             throw InputError(
-                "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is no "
-                "sum of cones in water; allowed: lamps a micrometre apart",
+                "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is not a sum of "
+                "cones in water; allowed: lamps at least a micrometre apart",
                 a.strobe->name,
                 b.strobe->name,
                 a.strobe->beam.name);
@@ -184,8 +182,8 @@ double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
     return least_m;
 }
 
-// A shell, a thousandth of a unit in size, keeps other lamps' light from what lies behind it: of
-// directions from them, a millionth at most, and on a floor a spot that no pixel sees.
+// A shell, a thousandth of a unit in size, blocks other lamps' light from what lies behind it: at
+// most a millionth of their directions, and on a floor a spot that no pixel sees.
 double unit_with_shells_m(const Rig& rig, std::span<const LampGrid> lamps) {
     constexpr double kMost_m = 0x1p-7;
     const double unit_m = scene_unit_m(rig);
@@ -201,8 +199,8 @@ void require_port(const Camera& camera) {
     const double clearance_m = least_clearance_m(*camera.port);
     if (clearance_m < kLeastClearance_m) {
         throw InputError(fmt::format(
-            "camera.port: found {:.3g} mm of {}; allowed for a render: {} mm and more, for POV-Ray "
-            "takes no notice of surfaces that are nearer",
+            "camera.port: found {:.3g} mm of {}; allowed for a render: {} mm or more, since "
+            "POV-Ray ignores surfaces that are closer",
             clearance_m * 1e3,
             clearance_m < camera.port->thickness_m ? "air between the pupil and the glass"
                                                    : "glass",
@@ -211,11 +209,11 @@ void require_port(const Camera& camera) {
     if (camera.port->dome || is_across_axis(*camera.port)) return;
     const double widest_deg = widest_off_normal_rad(camera) * 180.0 / std::numbers::pi;
     if (widest_deg > kWidest_deg) {
-        throw InputError(fmt::format(
-            "camera.port.normal: found a view that reaches {:.1f} degrees from it; allowed for a "
-            "render: up to {}, as the port has to be wider than any ray",
-            widest_deg,
-            kWidest_deg));
+        throw InputError(
+            fmt::format("camera.port.normal: found a view that reaches {:.1f} degrees from it; "
+                        "allowed for a render: up to {}, since the port must be wider than any ray",
+                        widest_deg,
+                        kWidest_deg));
     }
 }
 
@@ -240,8 +238,8 @@ void require_place(const Rig& rig, std::span<const LampGrid> lamps) {
 // What a frame shows.
 enum class Shown { Surfaces, Water };
 
-// By strobe of the rig. A user's own scene may hold anything, and water is everywhere, so there all
-// that shines is in it.
+// By strobe of the rig. A user's scene may contain anything, and water is everywhere, so there all
+// strobes that shine are included.
 std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
                                             std::span<const LampGrid> lamps,
                                             const SceneOptions& options,
@@ -269,7 +267,7 @@ std::vector<NamedSpectrum> named_lamps_of(const Rig& rig) {
     return named(spectra);
 }
 
-// The floor's first; a user's scene calls its own by the names that it gave them.
+// The floor's first; a user's scene uses the names that it gave them.
 std::vector<NamedSpectrum> reflectances_of(const Rig& rig, const SceneOptions& options) {
     std::vector<Spectrum> own{rig.seafloor.reflectance};
     for (const Object& object : rig.objects) own.push_back(object.reflectance);
@@ -301,12 +299,12 @@ struct Parts {
     std::vector<NamedSpectrum> reflectances;
     std::string rig{};
     double fade_m;
-    double unit_m;  // of the scene; in a user's own, that scene's word
+    double unit_m;  // of the scene; for a user's scene, that scene's word
     bool has_rays;  // of the camera, in a file of their own
 };
 
-// Of the veil's brightest: room above for what the coarse grid of its bound missed, and for strobes
-// of a user's scene that stand elsewhere.
+// Relative to the veil's brightest: room for what the coarse grid of its bound missed, and for
+// strobes of a user's scene that are elsewhere.
 constexpr int kVeilTargetLog2 = 8;
 constexpr auto kFogFrame = "distance";
 
@@ -367,7 +365,7 @@ std::string header_of(const Rig& rig,
                unit_m == 1.0 ? "Metres" : fmt::format("Units of {} m", sdl_number(unit_m)));
 }
 
-// own_scene: the user's, by name; none: the rig's floor.
+// own_scene: the user's, by name; empty: the rig's floor.
 std::string body_sdl(const Band& band,
                      const Parts& parts,
                      const SceneOptions& options,
@@ -402,7 +400,7 @@ std::string scene_sdl(const Rig& rig,
            body_sdl(band, parts, options, own);
 }
 
-// The wavelengths of a frame as the veil is rendered at them.
+// The wavelengths of a frame as rendered for the veil.
 std::vector<PlannedWavelength> in_veil(Frame frame) {
     std::vector<PlannedWavelength> wavelengths(frame.begin(), frame.end());
     for (PlannedWavelength& w : wavelengths) {
@@ -411,7 +409,7 @@ std::vector<PlannedWavelength> in_veil(Frame frame) {
     return wavelengths;
 }
 
-// Of one lobe; none: of no scattering at all.
+// Of one lobe; empty: without scattering.
 BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> lobe, Frame frame) {
     BandScattering scattering{.eccentricity = 0.0,
                               .samples = veil.sampling.samples,
@@ -425,7 +423,7 @@ BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> 
     return scattering;
 }
 
-// Nothing shines, and a fog tells how far each pixel sees.
+// Nothing shines, and a fog shows how far each pixel sees.
 std::string fog_sdl(const Rig& rig,
                     const Parts& parts,
                     const PlannedWavelength& wavelength,
@@ -503,7 +501,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     require_place(rig, lamps);
     const Parts parts = parts_of(rig, lamps, options);
     const std::vector<std::string> labels = wavelength_labels(wavelengths);
-    // Under a half, whatever the bound's margin: a PNG ends at 1.
+    // Below a half, whatever the bound's margin: a PNG ends at 1.
     constexpr int kPngPeakLog2 = -1;
     const int peak_log2 = options.format == FrameFormat::Exr ? options.peak_log2 : kPngPeakLog2;
     std::vector<FrameScene> scenes;
@@ -563,14 +561,14 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
 
 namespace {
 
-// Of a user's scene that is not planned yet: everything white.
+// For a user's scene that is not planned yet: everything white.
 std::string unplanned_sdl(const Rig& rig,
                           const std::string& scene_name,
                           bool has_rays,
                           const std::function<void(Band&)>& set_light) {
     SceneOptions options;
     options.user_scene = std::make_shared<UserScene>();
-    // Of paths that are told to a hundredth.
+    // For paths known to a hundredth.
     options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
@@ -583,14 +581,14 @@ std::string unplanned_sdl(const Rig& rig,
 
 }  // namespace
 
-std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
+std::string probe_sdl(const Rig& rig, const std::string& scene_name, const ProbeFrame& frame) {
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
     if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
     if (frame.is_coarse_in_radiosity) sdl += "#declare Aphotic_Coarse_Radiosity = true;\n";
     if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }
-    // The pinhole that shows as much tells all that is asked.
+    // A pinhole with the same view gives all that is needed.
     return sdl + unplanned_sdl(rig, scene_name, false, [&](Band& band) {
                for (std::size_t c = 0; c < band.exposure.size(); ++c) {
                    band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
@@ -612,13 +610,16 @@ std::string distance_sdl(const Rig& rig,
 
 namespace {
 
-// Always so many rays: POV-Ray's threshold looks at the three wavelengths together, and none must
-// change for another's sake.
+// Always the same number of rays: POV-Ray's threshold compares the three wavelengths together, and
+// none may change because of another.
 std::string antialias_ini(int rays) {
     if (rays == 0) return "; One ray through each pixel's centre.\nAntialias=off\n";
     return fmt::format(
-        "; {} x {} rays to each pixel beside the one through its centre.\n"
-        "Antialias=on\nSampling_Method=1\nAntialias_Threshold=0.0\nAntialias_Depth={}\n"
+        "; {} x {} rays per pixel besides the one through its centre.\n"
+        "Antialias=on\n"
+        "Sampling_Method=1\n"
+        "Antialias_Threshold=0.0\n"
+        "Antialias_Depth={}\n"
         "Jitter=off\n",
         rays,
         rays,

@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kColumns = 9;
 constexpr int kRows = 7;
-// Light that this many e-foldings leave counts for nothing beside the rest.
+// Light attenuated by this many e-foldings is negligible.
 constexpr double kVeilFoldings = 10.0;
 
-// The pixels that are looked at, ends of the image included.
+// The pixels examined, including the image's ends.
 template <class Look>
 void over_the_image(const Rig& rig, const Look& look) {
     for (int i = 0; i < kColumns; ++i) {
@@ -55,7 +55,7 @@ double shortest_path_m(const Rig& rig, std::span<const LampGrid> lamps) {
     return kRoom * shortest_m;
 }
 
-// By which light that the image shows is turned.
+// The angles by which the light in the image is turned.
 struct Angles {
     double from_rad;
     double to_rad;
@@ -184,8 +184,8 @@ double measured_error(const Rig& rig,
     return worst;
 }
 
-// Near enough for the samples to serve what is near. Where the cut might lie in glass, beyond all
-// that is lit.
+// Near enough for the samples to serve what is near. If the cut might lie in glass, beyond all that
+// is lit.
 double first_piece_m(const Rig& rig,
                      const LightFamily& direct,
                      const LightFamily& of_veil,

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil (light/veil.h) as POV-Ray's scattering media make it, with the shadows of objects in it.
+// The veil (light/veil.h) from POV-Ray's scattering media, including objects' shadows in it.
 //
 //   A(lambda) ~ sum_m S_m(lambda) A_m        S_m = sum_i b_i share_im
 //
-// A medium of POV-Ray has one phase function at all wavelengths. So the veil has frames of its own
-// beside those of the direct light: lamps shine, floor and objects are black, and each lobe m of
-// the water's phase functions (spectral/phase_lobes.h) has a frame, of which the one with a
-// negative S_m is taken off.
+// A POV-Ray medium has one phase function for all wavelengths. The veil therefore has its own
+// frames besides those of the direct light: lamps shine, floor and objects are black, and each lobe
+// m of the water's phase functions (spectral/phase_lobes.h) has a frame, which is subtracted if its
+// S_m is negative.
 //
 // The wavelengths are those of the direct light; their weights for the veil are fitted to it as if
 // b_i were a floor's reflectance, on paths from lamp to water to camera.
 //
-// What is known beforehand of its error, in water over the bare floor, is measured over a coarse
-// grid of the image against light/veil.h: the lobes, the samples (scene_gen/media_samples.h), and
-// how far lobes that cancel amplify the half floats. Light that is turned by less than kVeilCut is
-// not cut off, which the measure includes. It is no bound.
+// The known part of its error, in water over the bare floor, is measured on a coarse grid of the
+// image against light/veil.h: the lobes, the samples (scene_gen/media_samples.h), and how far
+// cancelling lobes amplify the half floats' rounding. Light turned by less than kVeilCut is not cut
+// off, and counts in the measured error. It is not a bound.
 #pragma once
 
 #include "rig/geometry.h"
@@ -42,13 +42,13 @@ struct PovrayVeil {
 struct PovrayVeilRequest {
     int samples = kVeilSamples;
     std::span<const LampGrid> lamps;
-    bool is_user_scene = false;  // whose strobes may stand anywhere
+    bool is_user_scene = false;  // whose strobes may be anywhere
     bool fits_weights = true;    // false: the wavelengths' own
     double frame_error = 0.0;
 };
 
 // family: of the direct light, for its longest path and a port's tilt. Sets the wavelengths' veil
-// but for its exposure.
+// except for its exposure.
 [[nodiscard]] PovrayVeil plan_povray_veil(const Rig& rig,
                                           const LightFamily& family,
                                           const PovrayVeilRequest& request,

@@ -32,14 +32,14 @@ std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
     return all_of(CurveRole::LampSpectrum, std::move(own));
 }
 
-// As a scene in the rig's folder asks for it.
+// As a scene in the rig's folder names it.
 std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& material) {
     const std::optional<CurveSource>& source = material.spectrum.source();
     if (!source || !source->is_file()) return material.name;
-    // From the folder first: how long and how strange the way to it is, is not the scene's matter.
+    // Relative to the folder: the path to the folder is irrelevant to the scene.
     const std::string here =
         std::filesystem::path(source->table).lexically_proximate(folder).generic_string();
-    // A scene cannot ask for a name that POV-Ray cannot hold: the one that is unique will do.
+    // A scene cannot use a name that POV-Ray cannot hold: any unique one will do.
     return scene_name(here) == here ? here : material.name;
 }
 

@@ -21,7 +21,7 @@ namespace aphotic {
 
 namespace {
 
-// Of what the veil and the frames are off by, whatever the wavelengths: the least to try.
+// Relative to the error of veil and frames, whatever the wavelengths: the least to try.
 constexpr double kVeilsNext = 1.1;
 
 std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
@@ -47,17 +47,17 @@ LightFamily family_of(const Rig& rig, const PlanRequest& request) {
     return family;
 }
 
-// Behind a port frames are counted, not wavelengths: three of them that cannot share cost three.
+// Behind a port frames are counted, not wavelengths: three that cannot share a frame cost three.
 int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
     return rig.camera.port ? 1 : scene.wavelengths_per_frame;
 }
 
-// What a shift changes on an object has no bound.
+// A shift's effect on an object has no bound.
 double pixel_shift(const Rig& rig, const SceneOptions& scene) {
     return rig.objects.empty() && !scene.user_scene ? scene.pixel_shift : 0.0;
 }
 
-// As many wavelengths as kinds of light tell all of them apart on one path; a few more serve the
+// As many wavelengths as kinds of light distinguish them all on one path; a few more serve the
 // others.
 int most_wavelengths(const LightFamily& family) {
     constexpr int kUsual = PlanTarget{}.most;
@@ -65,8 +65,7 @@ int most_wavelengths(const LightFamily& family) {
     return std::max(kUsual, static_cast<int>(family.sources.size()) + kFewMore);
 }
 
-// Puts the wavelengths into frames, and fits the weights to what these hold, or judges those of
-// bands.
+// Groups the wavelengths into frames, and fits the weights to these, or evaluates those of bands.
 void share_frames(const Rig& rig,
                   const QuadratureFitter& fitter,
                   std::span<const double> lambda_nm,
@@ -84,15 +83,15 @@ void share_frames(const Rig& rig,
     plan.quality = with_veil(rule.quality, plan.veil_error);
     if (!std::isfinite(plan.promise())) {
         throw InputError(
-            "found weights that show a channel light it is blind to, so that nothing can be "
+            "found weights that give a channel light to which it is blind, so nothing can be "
             "promised; allowed: fitted wavelengths, without --bands");
     }
 }
 
-// The fewest wavelengths that keep the tolerance, and keep it by the certificate too: where only
-// the fit finds them good enough, the fit is asked for more. Where sharing frames behind a port
-// breaks the tolerance, none is shared. What is returned is what the plan promises: over the
-// tolerance where no such plan is found.
+// The fewest wavelengths that achieve the tolerance, also by the certificate: if only the fit finds
+// them good enough, the fit is asked for more. If sharing frames behind a port breaks the
+// tolerance, none is shared. The result is what the plan promises: over the tolerance if no such
+// plan is found.
 double best_promise(double tolerance,
                     const Rig& rig,
                     const QuadratureFitter& fitter,
@@ -112,7 +111,7 @@ double best_promise(double tolerance,
     for (int trial = 0; trial < kMostTrials; ++trial) {
         const FittedRule rule = plan_wavelengths(fitter, rig.camera.range, target);
         const double fitted = rule.promise(plan.frame_error);
-        // Of what the fit alone finds too bad there is no plan, whatever it promises.
+        // If the fit already finds it too bad there is no plan, whatever it promises.
         if (fitted > target.tolerance) return trial == 0 ? fitted + plan.veil_error : promise;
         const std::vector<double> lambda_nm = wavelengths_of(rule.wavelengths);
         plan.scene.pixel_shift = pixel_shift(rig, request.scene);
@@ -130,8 +129,8 @@ double best_promise(double tolerance,
     return promise;
 }
 
-// Where it cannot be kept, the message offers a tolerance that was tried: searches are not so even
-// that what is kept here is kept by every larger one.
+// If it cannot be achieved, the message suggests a tolerance that was tried: searches are not
+// monotonic, so a larger tolerance may fail where this one works.
 void plan_to_tolerance(const Rig& rig,
                        const QuadratureFitter& fitter,
                        const PlanRequest& request,
@@ -144,7 +143,7 @@ void plan_to_tolerance(const Rig& rig,
          offered = at_least(std::max(promise, kNext * offered))) {
         promise = best_promise(offered, rig, fitter, request, plan);
         if (promise > offered) continue;
-        throw InputError("tolerance: found {}; allowed: {}, which {} wavelengths keep{}",
+        throw InputError("tolerance: found {}; allowed: {}, which {} wavelengths achieve{}",
                          request.tolerance,
                          offered,
                          plan.wavelengths.size(),
@@ -153,14 +152,14 @@ void plan_to_tolerance(const Rig& rig,
                              : "");
     }
     throw InputError(
-        "tolerance: found {}, and no plan for this rig keeps any up to 1: the best found promises "
-        "{:.3g}; allowed: --fitted, which takes what so many wavelengths keep",
+        "tolerance: found {}, but no plan for this rig achieves even 1: the best found promises "
+        "{:.3g}; allowed: --fitted, which accepts whatever error N wavelengths have",
         request.tolerance,
         least);
 }
 
-// A slipped point in the focal length is the likelier cause of paths that no plan serves: no lens
-// without distortion sees more than 135 degrees.
+// A misplaced decimal point in the focal length is the likelier cause of paths that no plan serves:
+// no lens without distortion sees more than 135 degrees.
 [[noreturn]] void refuse(const Rig& rig, const std::string& why) {
     constexpr double kMostView_rad = 150.0 * kRadiansPerDegree;
     constexpr double kMillimetresPerMetre = 1e3;
@@ -170,14 +169,14 @@ void plan_to_tolerance(const Rig& rig,
     const double view_rad = 2.0 * std::atan(half_m / camera.focal_length_m);
     if (view_rad <= kMostView_rad) throw InputError(why);
     throw InputError(
-        "{}; or another camera.focal_length_mm: {:.6g} makes a view of {:.1f} degrees from corner "
-        "to corner, and no lens without distortion has over 135",
+        "{}; or another camera.focal_length_mm: {:.6g} gives a field of view of {:.1f} degrees "
+        "from corner to corner, and no lens without distortion exceeds 135",
         why,
         kMillimetresPerMetre * camera.focal_length_m,
         view_rad / kRadiansPerDegree);
 }
 
-// What POV-Ray's samples find of a shadow's edge has no bound.
+// POV-Ray's samples at a shadow's edge have no error bound.
 void add_povray_veil(const Rig& rig, int samples, RenderPlan& plan) {
     const bool is_user_scene = plan.scene.user_scene != nullptr;
     const std::vector<LampGrid> lamps = scene_lamps(rig, plan.wavelengths, plan.scene);
@@ -253,7 +252,7 @@ RenderPlan plan_direct_light(const Rig& rig, const PlanRequest& request) {
     const int least_px = least_width_px(request.scene.antialias > 0);
     if (rig.camera.lens && rig.camera.width_px < least_px) {
         throw InputError(
-            "camera: found {} columns with a calibrated lens; allowed: {} and more, since POV-Ray "
+            "camera: found {} columns with a calibrated lens; allowed: {} or more, since POV-Ray "
             "finds no rays for fewer",
             rig.camera.width_px,
             least_px);
@@ -303,7 +302,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     if (!rig.water.scatters() || !request.scene.veil_samples) return plan;
     const int samples = *request.scene.veil_samples;
     add_povray_veil(rig, samples, plan);
-    // As many more wavelengths as the veil takes, whose paths differ more.
+    // As many more wavelengths as the veil needs, whose paths vary more.
     constexpr int kMostMore = 9;
     const int fewest = static_cast<int>(plan.wavelengths.size());
     const int step = wavelengths_per_step(rig, request.scene);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The plan of a render: which wavelengths, with which weights, in which frames, what is left out,
-// and the error that all of this promises.
+// The plan of a render: its wavelengths, weights and frames, what is omitted, and the error that
+// all of this promises.
 //
 // The promise of a channel is
 //
 //   promise = error + amplification frame_error
 //
-// (spectral/quadrature_fit.h). frame_error is kFrameError, and kLampError more where point lamps
-// stand for an emitter. It holds for every pixel off the edges of beams and objects that is
-// brighter than black (1e-8 of the brightest), relative to its own signal. A scene of the user's
-// may hold what voids it: no_promise says what.
+// (spectral/quadrature_fit.h). frame_error is kFrameError, and kLampError more if point lamps
+// represent an emitter. It holds for every pixel off the edges of beams and objects that is
+// brighter than black (1e-8 of the brightest), relative to its own signal. A user's scene may
+// contain something that voids it, which no_promise names.
 //
-// Of a veil that POV-Ray makes, the promise is measured and may be over the tolerance, to which the
-// direct light alone is planned (scene_gen/povray_veil.h). Where objects or a scene of the user's
-// may cast shadows in it, it has none.
+// For a veil rendered by POV-Ray, the promise is measured and may exceed the tolerance, to which
+// only the direct light is planned (scene_gen/povray_veil.h). Where objects or a user's scene may
+// cast shadows in it, it has none.
 #pragma once
 
 #include "scene_gen/light_culling.h"
@@ -29,15 +29,15 @@
 
 namespace aphotic {
 
-// The lamps that stand for an emitter err by 1e-4 (geometry.h), the reference's by a fifth of it.
+// The lamps of an emitter err by 1e-4 (geometry.h), the reference's by a fifth of it.
 inline constexpr double kLampError = 1.2e-4;
 
 struct PlanRequest {
-    double tolerance = 1e-3;             // as few fitted wavelengths as keep it
-    std::optional<int> fitted;           // or so many, whatever they keep
+    double tolerance = 1e-3;             // the fewest fitted wavelengths that achieve it
+    std::optional<int> fitted;           // or so many, whatever their error
     std::optional<int> bands;            // or equal bands
     std::vector<double> wavelengths_nm;  // or these, with fitted weights
-    std::optional<PathRange> paths;      // instead of what the rig's own camera sees
+    std::optional<PathRange> paths;      // instead of those that the rig's own camera sees
     SceneOptions scene;
 };
 
@@ -52,9 +52,9 @@ struct RenderPlan {
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
     double veil_error = 0.0;  // of what is added for water that scatters; part of quality's
-    SceneOptions scene;       // with the veil that POV-Ray makes, where that is asked for
+    SceneOptions scene;       // including the veil that POV-Ray renders, if requested
     std::vector<Omission> omissions;
-    std::vector<std::string> no_promise{};  // why what the scene shows has none; empty: it has
+    std::vector<std::string> no_promise{};  // why the scene has no promise; empty: it has one
 
     [[nodiscard]] std::size_t frames() const {
         return wavelengths.empty() ? 0 : wavelengths.back().frame + 1;
@@ -65,8 +65,8 @@ struct RenderPlan {
 
 [[nodiscard]] double frame_error(const Rig& rig);
 
-// Throws InputError when the tolerance cannot be kept, or wavelengths are out of order or range.
-// Where sharing frames behind a port would break the tolerance, each wavelength has its own.
+// Throws InputError if the tolerance cannot be achieved, or wavelengths are out of order or range.
+// If sharing frames behind a port would break the tolerance, each wavelength has its own.
 [[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
 
 // The wavelengths, which are increasing, in frames, with the light of the rig or of its user's
@@ -75,7 +75,7 @@ struct RenderPlan {
                                                        std::span<const double> lambda_nm,
                                                        const SceneOptions& options);
 
-// What each wavelength's frame knows of the fitter's family of light.
+// The light in each wavelength's frame, for the fitter's family.
 [[nodiscard]] std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
                                                    std::span<const PlannedWavelength> wavelengths);
 

@@ -18,7 +18,7 @@ constexpr std::uint64_t kHalf_bytes = 2;
 constexpr std::uint64_t kHeader_bytes = 4096;       // of an image; and what a short log holds
 constexpr std::uint64_t kChannelHeader_bytes = 64;  // its name and type
 constexpr std::uint64_t kBlockHeader_bytes = 16;    // OpenEXR notes where it is and how long
-constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray says every 0.1 s how far it is
+constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray reports progress every 0.1 s
 constexpr std::uint64_t kPovrayPixel_bytes = 20;    // five floats
 constexpr std::uint64_t kPovrayState_bytes = 21;  // these, and a header for each square of 32 x 32
 constexpr std::uint64_t kPovrayBuffer_bytes = 129ULL << 20U;  // from there on an image goes to /tmp
@@ -60,7 +60,7 @@ FileSizes largest_files(const ImageSize& size) {
                            pixels / kPixelsOfLogByte,
             .image_bytes = exr_bytes(size, kChannels, kFloat_bytes),
             .spectral_bytes = exr_bytes(size, channels_of(size), kFloat_bytes),
-            // PNG's own overhead: a byte a row, and under a thousandth.
+            // PNG's own overhead: a byte per row, and below a thousandth.
             .preview_bytes = kHeader_bytes + static_cast<std::uint64_t>(size.height_px) +
                              3 * pixels + 3 * pixels / 1000};
 }
@@ -87,7 +87,7 @@ ResourceNeeds images_needs(const ImageSize& size) {
     return {.folder_bytes = images_bytes(largest_files(size))};
 }
 
-// One setting at a time, whose folder is taken away before the next; the reference stays.
+// One setting at a time, whose folder is removed before the next; the reference stays.
 ResourceNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs) {
     ResourceNeeds needs =
         render_needs({.size = size, .frames = frames, .scenes_bytes = 0, .jobs = jobs});
@@ -120,7 +120,7 @@ int jobs_with_memory(const ResourceNeeds& needs, std::uint64_t free_bytes, int j
 std::string shortage(const ResourceNeeds& needs, const FreeDisk& free, const std::string& folder) {
     const auto lack = [](std::uint64_t needed_bytes, std::uint64_t free_bytes, const auto& where) {
         if (needed_bytes <= free_bytes) return std::string();
-        return fmt::format("needs up to {} in {}, {} are free",
+        return fmt::format("needs up to {} in {}, {} free",
                            bytes_in_words(needed_bytes),
                            where,
                            bytes_in_words(free_bytes));

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much disk a render, a trace, a study or lightmaps take at most, and how much memory a render,
-// before any of it is begun; and whether there is so much.
+// Upper bounds of the disk that a render, a trace, a study or lightmaps need, and of a render's
+// memory, before it starts; and whether there is enough.
 //
-// As if nothing could be compressed, P pixels, n wavelengths,
+// As if nothing could be compressed, with P pixels and n wavelengths,
 //
 //   frame         6 P             three half floats a pixel; and its log. 12 P from a PNG: floats
 //   image.exr     12 P            three floats a pixel
 //   spectral.exr  (12 + 4 n) P    one float a wavelength more
 //   preview.png   3 P             three bytes a pixel
 //
-// Smooth images take a twentieth of it, noise nearly all. Files are written beside those of the
-// same name that they replace, so these give no room. While POV-Ray renders, each of its processes
-// keeps beside the frame what it would need to go on, 21 P, and where its image exceeds 128 MiB
-// that image too in /tmp, 20 P.
+// Smooth images need a twentieth of it, noise nearly all. Files are written next to those that they
+// replace, so these free no room. While POV-Ray renders, each of its processes keeps, besides the
+// frame, its state for resuming, 21 P, and if its image exceeds 128 MiB that image too in /tmp, 20
+// P.
 //
-// A POV-Ray takes 24 MB of memory, 6 times the text of its scene, its image unless that goes to
-// /tmp, and 8 P for the frame that it writes: a little more than measured with POV-Ray 3.7.0.10 (18
-// MB, 3.5 times, 27 P; 217 MB at 24 megapixels). What a user's scene includes is not known here.
+// A POV-Ray process takes 24 MB of memory, 6 times the text of its scene, its image unless that
+// goes to /tmp, and 8 P for the frame that it writes: slightly more than measured with POV-Ray
+// 3.7.0.10 (18 MB, 3.5 times, 27 P; 217 MB at 24 megapixels). A user's includes are not known here.
 // Integrating takes 25 P and 192 MB.
 #pragma once
 
@@ -46,7 +46,7 @@ struct FileSizes {
 [[nodiscard]] FileSizes largest_files(const ImageSize& size);
 
 struct ResourceNeeds {
-    std::uint64_t folder_bytes = 0;      // at the fullest moment, beside what is there already
+    std::uint64_t folder_bytes = 0;      // at the fullest moment, besides what is there already
     std::uint64_t temporary_bytes = 0;   // in /tmp
     std::uint64_t job_memory_bytes = 0;  // of each POV-Ray that runs
     std::uint64_t memory_bytes = 0;      // of all of them, or of integrating
@@ -55,13 +55,13 @@ struct ResourceNeeds {
 // What a render writes and runs.
 struct RenderWork {
     ImageSize size;
-    std::size_t frames = 0;  // that are to be rendered; those that are kept take no more room
+    std::size_t frames = 0;          // to be rendered; those kept need no more room
     std::uint64_t scenes_bytes = 0;  // on disk, all of them
     std::uint64_t parsed_bytes = 0;  // by a POV-Ray: the longest scene and our includes
     int jobs = 1;
 };
 [[nodiscard]] ResourceNeeds render_needs(const RenderWork& work);
-// Of frames that are there, integrated; and of a trace.
+// For existing frames, integrated; and for a trace.
 [[nodiscard]] ResourceNeeds images_needs(const ImageSize& size);
 // frames: of the setting that has most.
 [[nodiscard]] ResourceNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs);
@@ -79,17 +79,17 @@ struct LightmapWork {
 // Of lightmap/oplab_export.h, whatever its altitudes.
 [[nodiscard]] ResourceNeeds oplab_needs(int width_px, int height_px);
 
-// Where the work is to be done.
+// Where the work will be done.
 struct FreeDisk {
     std::uint64_t folder_bytes = 0;
     std::uint64_t temporary_bytes = 0;
     bool is_one_disk = false;  // folder and /tmp share it
 };
 
-// How many of the jobs have room at a time, at least 1.
+// The number of jobs that fit at a time, at least 1.
 [[nodiscard]] int jobs_with_memory(const ResourceNeeds& needs, std::uint64_t free_bytes, int jobs);
 
-// What is lacking, in words: "needs up to 12.3 GB in out, 4.1 GB are free". Empty when nothing is.
+// What is lacking, in words: "needs up to 12.3 GB in out, 4.1 GB free". Empty if nothing is.
 [[nodiscard]] std::string shortage(const ResourceNeeds& needs,
                                    const FreeDisk& free,
                                    const std::string& folder);

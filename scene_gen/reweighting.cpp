@@ -61,7 +61,7 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
             if (strobe.power == 0.0) {
                 if (flux[s] == 0.0) continue;
                 throw InputError(
-                    "strobe '{}': found power 0; allowed: more, for the frames hold its light",
+                    "strobe '{}': found power 0; allowed: more, since the frames hold its light",
                     strobe.name);
             }
             for (const double reflectance : reflectances) {
@@ -89,7 +89,7 @@ Rig covering_frames(Rig rig, const Manifest& manifest) {
     return rig;
 }
 
-// The fewest further wavelengths with which the tolerance would be kept, as the message says it.
+// The fewest further wavelengths with which the tolerance would be achieved, for the message.
 std::string lacking(const QuadratureFitter& fitter,
                     const Rig& changed,
                     const std::vector<FrameLight>& frames,
@@ -137,12 +137,11 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     }
     const double promise = rule.promise(manifest.frame_error);
     if (promise > tolerance) {
-        throw InputError(
-            fmt::format("the frames can be this rig's image to {} only; allowed: {}, the "
-                        "tolerance; {}",
-                        at_least(promise),
-                        tolerance,
-                        lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
+        throw InputError(fmt::format(
+            "the frames give this rig's image to {} only; allowed: {}, the tolerance; {}",
+            at_least(promise),
+            tolerance,
+            lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }
     now.veil.reset();  // the frames' own rig's
     now.model.reset();

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Frames outlive the rig: new weights make the frames of one rig the image of another that
+// Frames can be reused: new weights turn the frames of one rig into the image of another that
 // differs in water, lamps, materials or sensor, but not in geometry (rig/geometry_signature.h).
 //
 //   S_c = sum_j w_cj L_j,   w fitted to the changed rig's signals on the basis of the frames' light
 //
-// A frame holds Phi_s rho exp(-K l) of the rig it was rendered from, noted in its manifest for each
-// wavelength, strobe and material; over the paths that the geometry allows, sums of such
-// exponentials span other ones. How well is found as for any plan (spectral/quadrature_fit.h), and
-// promised.
+// A frame holds Phi_s rho exp(-K l) of its own rig, recorded in its manifest for each wavelength,
+// strobe and material; over the paths that the geometry allows, sums of such exponentials span
+// others. How well is determined as for any plan (spectral/quadrature_fit.h), and promised.
 #pragma once
 
 #include "scene_gen/render_plan.h"

@@ -59,8 +59,8 @@ std::string emitter_sdl(const Strobe& strobe, LampGrid lamps) {
                        lamps.along);
 }
 
-// The beams that the scene calls: those with a shell, one for all their strobes, and all where it
-// is not ours.
+// The beams that the scene calls: those with a shell, one for all their strobes, and all of them in
+// a user's scene.
 std::vector<Beam> called_beams(const std::vector<StrobeInScene>& strobes, SceneAuthor author) {
     std::vector<Beam> beams;
     for (const StrobeInScene& strobe : strobes) {
@@ -158,10 +158,10 @@ struct ShapeText {
 };
 
 // The objects of a rig as a macro for POV-Ray, Aphotic_Rig_Objects (): sphere, box, and mesh2 of
-// flat triangles, in POV-Ray's frame (rig/geometry.h), with pigment and finish as the floor has
-// them. POV-Ray turns a normal towards the camera's ray, so a triangle is lit on the side that is
-// seen. Every object casts shadows, which is POV-Ray's default, but for what lies within a
-// millimetre of the lit point or of the lamp.
+// flat triangles, in POV-Ray's frame (rig/geometry.h), with pigment and finish like the floor's.
+// POV-Ray turns a normal towards the camera's ray, so a triangle is lit on the visible side. Every
+// object casts shadows, POV-Ray's default, except from within a millimetre of the lit point or of
+// the lamp.
 std::string pov_objects(const Rig& rig, std::span<const NamedSpectrum> reflectances) {
     std::string text = "#macro Aphotic_Rig_Objects ()\n";
     if (!rig.objects.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A rig as macros for POV-Ray, in the words of plugin/include/aphotic.inc:
+// A rig as macros for POV-Ray, in the terms of plugin/include/aphotic.inc:
 //
 //   Aphotic_Rig_Camera ()    its camera and port
 //   Aphotic_Rig_Strobes ()   its strobes
@@ -22,16 +22,16 @@
 
 namespace aphotic {
 
-// One strobe as the scene is to have it.
+// One strobe as the scene needs it.
 struct StrobeInScene {
-    Beam beam;       // what of its own lights the view, if anything does
+    Beam beam;       // which of its light is in view, if any
     LampGrid lamps;  // of its emitter
 };
 
-// Whose words follow the rig's: a user may call any of its beams by name, with Aphotic_Beam.
+// A user's scene may call any of the rig's beams by name, with Aphotic_Beam.
 enum class SceneAuthor { Ours, User };
 
-// lamps and reflectances: the names of the rig's spectra, as the scene's band has them.
+// lamps and reflectances: the names of the rig's spectra in the scene's band.
 [[nodiscard]] std::string rig_sdl(const Rig& rig,
                                   const std::vector<StrobeInScene>& strobes,
                                   std::span<const NamedSpectrum> lamps,

@@ -25,7 +25,8 @@ namespace aphotic {
 void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
                                double frame_error,
                                FrameFormat format) {
-    // Well held: also a pixel 64 times darker has all of its digits, of a PNG one 4 times darker.
+    // With this level, a pixel 64 times darker still has all of its digits, in a PNG one 4 times
+    // darker.
     const double well_log2 = format == FrameFormat::Exr ? -8.0 : -4.0;
     const int held = held_log2(format);
     const auto peak_log2 = [](const PlannedWavelength& w) {
@@ -47,9 +48,9 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
         for (const PlannedWavelength& w : wavelengths) {
             if (!counts(w) || peak_log2(w) >= held) continue;
             throw InputError(
-                "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
-                "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "
-                "for nothing",
+                "found light of at most {:.1e} at {} nm, fainter than frames can hold, which "
+                "counts in {} with a weight of {:.1e}; allowed: wavelengths that frames can hold, "
+                "or of no weight",
                 w.radiance_bound,
                 w.lambda_nm,
                 kChannelNames[c],
@@ -147,7 +148,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (const FrameScene& scene : set.scenes) {
-        // Settings and includes change pixels as much as the scene does: all make the checksum.
+        // Settings and includes change pixels as much as the scene does: the checksum covers all.
         manifest.frames.push_back({.name = scene.name,
                                    .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
@@ -158,12 +159,12 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
 namespace {
 
-// POV-Ray takes what follows a '[' in the name of its settings for a section of them.
+// POV-Ray reads what follows a '[' in the name of its settings file as a section.
 void require_no_bracket(const std::filesystem::path& folder) {
     if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
     throw InputError(
-        "{}: found a '[' in the folder's path; allowed: none, for POV-Ray cannot read its settings "
-        "there",
+        "{}: found a '[' in the folder's path; allowed: none, since POV-Ray cannot read its "
+        "settings there",
         folder.string());
 }
 
@@ -172,14 +173,14 @@ void require_place_in_settings(const std::string& path) {
     const auto is_plain = [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; };
     if (std::ranges::all_of(path, is_plain)) return;
     throw InputError(
-        "{}: found a path with letters beyond ASCII, a quotation mark or a line's end; "
-        "allowed: none, for POV-Ray cannot read them",
+        "{}: found a path with non-ASCII letters, a quotation mark or a line break; allowed: none, "
+        "since POV-Ray cannot read them",
         path);
 }
 
-// As the settings name it that stand there, seen from the user's scene's folder.
+// As named by the settings there, seen from the user's scene's folder.
 std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
-    // Absolute, for a folder that is not there yet.
+    // Absolute, for a folder that does not exist yet.
     const std::filesystem::path here = std::filesystem::absolute(povray);
     return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Everything that a render of a rig consists of before POV-Ray runs: the scenes and the manifest
-// that says how their frames become images. Written to a folder DIR:
+// Everything for a render of a rig before POV-Ray runs: the scenes and the manifest, which
+// describes how their frames become images. Written to a folder DIR:
 //
 //   DIR/manifest.json
 //   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/*.inc, DIR/povray/frames/
@@ -23,17 +23,17 @@ namespace aphotic {
 struct SceneSet {
     std::vector<FrameScene> scenes;   // in the order of manifest.frames
     Manifest manifest;                // nothing rendered yet
-    std::string ini;                  // less the paths, which change no pixel
-    std::optional<Camera> camera{};   // with a lens, whose rays are written; none: a pinhole
+    std::string ini;                  // without the paths, which change no pixel
+    std::optional<Camera> camera{};   // with a lens, whose rays are written; empty: a pinhole
     std::vector<float> vignetting{};  // by pixel; empty: none
-    // Whose veil is written beside the frames; none: none, or POV-Ray makes it.
+    // The rig whose veil is written next to the frames; null: none, or POV-Ray renders it.
     std::optional<Rig> scattering{};
-    std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
-    std::string scene_files_digest{};    // of the user's own, as it was planned for
+    std::filesystem::path scene_file{};  // the user's, absolute; empty: the rig's floor
+    std::string scene_files_digest{};    // the user's, as it was planned for
     bool scene_writes_files = false;     // the user's own
 };
 
-// Throws InputError where a wavelength counts whose light is fainter than frames hold.
+// Throws InputError if a wavelength matters whose light is fainter than frames can hold.
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
 
 // Light that is fainter than frames hold. POV-Ray's colours are floats, which bounds exposures, and
@@ -51,16 +51,15 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
                                double frame_error,
                                FrameFormat format = FrameFormat::Exr);
 
-// What the lamps alone would signal: the sum over strobes of their light, undimmed and white, over
-// the full spectrum.
+// The signal of the lamps themselves: the sum over strobes of their light, unattenuated and white,
+// over the full spectrum.
 [[nodiscard]] std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& family);
 
-// Throws InputError where POV-Ray could not read its settings in the folder, which need not be
-// there yet.
+// Throws InputError if POV-Ray could not read its settings in the folder, which need not exist yet.
 void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
-// Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
-// renders first notes what is there already.
+// Scenes, settings and an empty folder for the frames; not the manifest, in which the first render
+// records the existing frames.
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
 }  // namespace aphotic

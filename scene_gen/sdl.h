@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Words of POV-Ray's scene description language: numbers that read back to the same bits, texts
-// that cannot be anything but texts.
+// Terms of POV-Ray's scene description language: numbers that read back to the same bits, and texts
+// that cannot be anything else.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace aphotic {
 
-// What a frame's channels red, green and blue hold.
+// The light in a frame's channels red, green and blue.
 using Channels = std::array<double, 3>;
 
 [[nodiscard]] std::string sdl_number(double value);
@@ -21,12 +21,13 @@ using Channels = std::array<double, 3>;
 // A point or a direction of the sled's frame, in POV-Ray's.
 [[nodiscard]] std::string sdl_point(const Eigen::Vector3d& sled);
 
-// What a text in POV-Ray's language can hold of this one: ASCII, without quotation marks,
-// backslashes and line ends. POV-Ray itself makes a blank of any letter beyond ASCII, and then
-// takes texts that differ in such letters alone for equal.
+// The part of a text that POV-Ray's language can hold: ASCII, without quotation marks, backslashes
+// and line ends. POV-Ray itself turns any letter beyond ASCII into a blank, and then treats texts
+// that differ only in such letters as equal.
 [[nodiscard]] std::string sdl_letters(std::string_view text);
 
-// sdl_letters in quotes. What would end it, escape from it or break the line is replaced.
+// sdl_letters in quotes. Characters that would end it, escape from it or break the line are
+// replaced.
 [[nodiscard]] std::string sdl_text(std::string_view text);
 
 // For a comment, which ends with its line.

@@ -45,8 +45,8 @@ PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
     PathRange range{.shortest_m = std::numeric_limits<double>::infinity(), .longest_m = 0.0};
     for (const auto& pixel : pixels) {
         for (const UserScene::Lit& lit : pixel) {
-            range.shortest_m = std::min(range.shortest_m, lit.path_m / kSurveyRoom);
-            range.longest_m = std::max(range.longest_m, lit.path_m * kSurveyRoom);
+            range.shortest_m = std::min(range.shortest_m, lit.path_m / kProbeRoom);
+            range.longest_m = std::max(range.longest_m, lit.path_m * kProbeRoom);
         }
     }
     return range.longest_m > 0.0 ? range : PathRange{};
@@ -69,11 +69,9 @@ void require_known(const std::string& name, const Rig& rig) {
     std::ranges::sort(known);
     known.erase(std::unique(known.begin(), known.end()), known.end());
     const std::string nearest = nearest_name(name, known);
-    throw InputError(
-        "is no known reflectance{}; allowed: {}, or a .csv file beside the "
-        "scene",
-        nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
-        fmt::join(known, ", "));
+    throw InputError("is not a known reflectance{}; allowed: {}, or a .csv file beside the scene",
+                     nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
+                     fmt::join(known, ", "));
 }
 
 }  // namespace
@@ -105,8 +103,8 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
 
 namespace {
 
-// What stands in quotes on one line. No regular expression: on a long line, as of a mesh, the
-// library's run out of stack.
+// The quoted strings within one line. Not by regular expression: on a long line, as in a mesh, the
+// library's overflows the stack.
 std::vector<std::string> quoted_in(const std::string& text) {
     std::vector<std::string> all;
     std::size_t open = text.find('"');
@@ -125,7 +123,7 @@ bool is_language(const fs::path& file) {
     return std::ranges::find(kLanguage, file.extension().string()) != kLanguage.end();
 }
 
-// The scene, and what it or a file so found names that is there.
+// The scene, and the existing files that it or a file so found names.
 std::set<fs::path> files_of(const fs::path& scene_file) {
     std::set<fs::path> seen;
     std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
@@ -147,7 +145,7 @@ std::set<fs::path> files_of(const fs::path& scene_file) {
 
 std::string digest_of_scene(const fs::path& scene_file) {
     const fs::path folder = fs::absolute(scene_file).lexically_normal().parent_path();
-    std::map<std::string, std::string> digests;  // in an order that no listing changes
+    std::map<std::string, std::string> digests;  // in an order that does not depend on the listing
     for (const fs::path& file : files_of(scene_file)) {
         digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
     }
@@ -169,10 +167,11 @@ bool opens_to_write(const fs::path& scene_file) {
 void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
     if (digest_of_scene(scene_file) == files_digest) return;
     throw RunError(
-        "{}: it, or a file that it names, was changed while it was worked on; run the "
-        "same command again, for the scene as it is now{}",
+        "{}: this scene, or a file that it names, changed during the run; run the same command "
+        "again with the current scene{}",
         scene_file.string(),
-        opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : "");
+        opens_to_write(scene_file) ? ". Files that it writes itself must be the same each time"
+                                   : "");
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

@@ -17,11 +17,11 @@
 namespace aphotic {
 namespace {
 
-// Of the spectral integral, its table and the rule along the ray: a tenth of what the interpolation
-// is off by.
+// The share of the spectral integral, its table and the rule along the ray: a tenth of the
+// interpolation's error.
 constexpr double kTableError = 0.1 * kVeilOfSignal;
 constexpr int kBlockRows = 2 * kVeilTile_px;
-// Deflate takes longer than all the rest, for a third of the size.
+// Deflate takes longer than everything else, for a third of the size.
 constexpr int kNotCompressed = 0;
 
 // Planes that have the same rays.
@@ -30,8 +30,8 @@ struct Planes {
     CameraRays rays;
 };
 
-// Of R, G, B and then the wavelengths, in the manifest's order: as many as one may hold, but behind
-// a port each wavelength by itself, for it has its own ray.
+// R, G, B and then the wavelengths, in the manifest's order: as many as a group may hold, but
+// behind a port each wavelength separately, since it has its own ray.
 std::vector<Planes> planes_of(const Rig& rig,
                               const Manifest& manifest,
                               bool may_see_far,
@@ -97,7 +97,7 @@ void paint_block(const std::vector<Planes>& planes,
     }
 }
 
-// How far each pixel sees, from the frame of fog; infinite where that is all there is.
+// How far each pixel sees, from the frame of fog; infinite if only fog is there.
 std::vector<double> distances(const std::filesystem::path& folder,
                               const Manifest& manifest,
                               Rows rows) {
@@ -113,8 +113,8 @@ std::vector<double> distances(const std::filesystem::path& folder,
     return distance_m;
 }
 
-// Over anything, pixel by pixel. Where the floor is in view, it is the floor: nearer to it than the
-// fog's half floats tell.
+// Over anything, pixel by pixel. Where the floor is in view, its distance is used, since the fog's
+// half floats are coarser.
 std::vector<float> block_of_pixels(const std::vector<Planes>& planes,
                                    const Rig& rig,
                                    Rows rows,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil (light/veil.h) of a render's image, which is added to what POV-Ray's frames hold:
+// The veil (light/veil.h) of a render's image, which is added to the light of POV-Ray's frames:
 //
 //   S_c         = sum_j w_cj 2^-e_j F_j + V_c
 //   L(lambda_j) = 2^-e_j F_j + A(lambda_j)
@@ -11,10 +11,10 @@
 // A    the veil at one wavelength, by its own ray, whichever its frame has
 //
 // Both are planes of one file (veil_path() of spectral/manifest.h), of floats, up to what the pixel
-// sees: the rig's floor, or as far as the frame of fog tells (spectral/manifest.h), to a half
-// float's digits. Shadows in the veil are left out. Off by no more than veil_plane_error() of a
-// pixel's signal over the floor, measured and no bound: of the interpolation, and of
-// kVeilMapPoints a panel, or kVeilPoints where these are not right to a tenth of kVeilOfSignal.
+// sees: the rig's floor, or the distance from the frame of fog (spectral/manifest.h), to a half
+// float's digits. Shadows in the veil are omitted. The error is at most veil_plane_error() of a
+// pixel's signal over the floor, measured and not a bound: from the interpolation, and from
+// kVeilMapPoints per panel, or kVeilPoints if these are not accurate to a tenth of kVeilOfSignal.
 #pragma once
 
 #include "light/path_range.h"
@@ -27,24 +27,24 @@
 
 namespace aphotic {
 
-// For a veil without frames of its own. Throws InputError where something other than the bare floor
-// is in view.
+// For a veil without frames of its own. Throws InputError if something other than the bare floor is
+// in view.
 void require_bare_floor_under_veil(const Rig& rig);
 
 [[nodiscard]] double veil_plane_error(const Rig& rig);
 
-// The quality of a rule for the sum, of channels that see something.
+// The quality of a rule for the sum, for channels that see something.
 [[nodiscard]] std::array<RuleQuality, kChannels> with_veil(
     std::array<RuleQuality, kChannels> quality, double veil_error);
 
-// Writes veil_path(folder) for the manifest's wavelengths, in blocks of rows, by as many threads;
-// returns what a manifest notes of it: nothing, and no file, where the water does not scatter.
+// Writes veil_path(folder) for the manifest's wavelengths, in blocks of rows, with as many threads;
+// returns the manifest's record of it: empty, and no file, if the water does not scatter.
 std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
                                        const Rig& rig,
                                        const Manifest& manifest,
                                        int threads);
 
-// The same of R, G and B alone.
+// The same for R, G and B only.
 std::optional<ManifestVeil> write_veil_of_signals(const std::filesystem::path& folder,
                                                   const Rig& rig,
                                                   const Manifest& manifest,

@@ -22,13 +22,13 @@ std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
 
 void require_wavelengths(WavelengthRange range, std::span<const double> lambda_nm) {
     for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
-        // Closer ones could not be told apart by the names of their channels.
+        // Closer wavelengths would have the same channel names.
         constexpr double kLeastStepNm = 1e-5;
         const bool increases = j == 0 || lambda_nm[j] >= lambda_nm[j - 1] + kLeastStepNm;
         if (increases && range.contains(lambda_nm[j])) continue;
         throw InputError(
-            "wavelengths: found {} nm in place {}; allowed: increasing wavelengths from {} to {} "
-            "nm",
+            "wavelengths: found {} nm at position {}; allowed: increasing wavelengths from {} to "
+            "{} nm",
             lambda_nm[j],
             j + 1,
             range.first_nm,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which wavelengths stand for the spectrum, and with which weights.
+// The wavelengths that represent the spectrum, and their weights.
 //
 //   S_c = int L(lambda) Q_c(lambda) dlambda  ~  sum_j w_cj L(lambda_j)
 //

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr WavelengthRange kVisible{380.0, 780.0};
 
-// Work on every whole nanometre in the range.
+// Calls work on every whole nanometre in the range.
 template <typename Work>
 void each_nm(WavelengthRange range, const Work& work) {
     for (double nm = std::ceil(range.first_nm); nm <= range.last_nm; nm += 1.0) work(nm);
@@ -40,7 +40,7 @@ std::vector<Spectrum> surfaces() {
     return surfaces;
 }
 
-// What an eye sees by daylight.
+// An observer's response by daylight.
 class Observer {
   public:
     Observer()
@@ -91,8 +91,7 @@ class Observer {
     Matrix3d srgb_of_xyz_;
 };
 
-// Of equal energy in each channel: what it sees of each surface, as a share of what it sees of
-// white.
+// Under equal energy in each channel: the response to each surface over that to white.
 std::vector<ShownSurface> shown(const Sensor& sensor,
                                 WavelengthRange range,
                                 const std::function<double(double)>& light,
@@ -108,7 +107,7 @@ std::vector<ShownSurface> shown(const Sensor& sensor,
         white += weights.back();
     });
     if (!(white.minCoeff() > 0.0)) {
-        throw InputError("a channel sees none of the light; allowed: light in every channel");
+        throw InputError("a channel receives none of the light; allowed: light in every channel");
     }
     std::vector<ShownSurface> all;
     for (const Spectrum& surface : surfaces()) {
@@ -123,8 +122,8 @@ std::vector<ShownSurface> shown(const Sensor& sensor,
     return all;
 }
 
-// Rows that add up to 1 are the identity's plus any of two that add up to 0: least squares in two
-// unknowns, the least of them where the surfaces leave a choice.
+// Rows that add up to 1 are the identity's plus a combination of two rows that add up to 0: least
+// squares in two unknowns, of least norm where the surfaces leave a choice.
 Matrix3d fitted(const std::vector<ShownSurface>& surfaces) {
     const auto rows = static_cast<Eigen::Index>(surfaces.size());
     Eigen::MatrixX2d differences(rows, 2);
@@ -135,7 +134,7 @@ Matrix3d fitted(const std::vector<ShownSurface>& surfaces) {
         differences.row(i) << v[0] - v[1], v[1] - v[2];
         missing.row(i) = surface.srgb - v;
     }
-    // Channels that differ by rounding alone are the same.
+    // Channels that differ only by rounding are equal.
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX2d> solver;
     constexpr double kSame = 1e-9;
     solver.setThreshold(kSame);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From a camera's channels to sRGB: the matrix that makes a corrected image one to look at.
+// The matrix from a camera's channels to sRGB, which makes a corrected image viewable.
 //
-// A survey that is divided by its light has in each channel the reflectance as the channel sees it;
-// shown as sRGB, a surface should look as it does by daylight:
+// A survey divided by its light holds in each channel the reflectance as that channel sees it; in
+// sRGB, a surface should look as it does by daylight:
 //
 //   v_c = int rho E Q_c dlambda / int E Q_c dlambda
 //   t   = A^-1 X,   X = int rho D (xbar, ybar, zbar) dlambda / int D ybar dlambda
@@ -17,11 +17,11 @@
 // M     the matrix; t linear sRGB
 //
 // Integrals are sums over whole nanometres. The surfaces are a colour chart's 24 patches and the
-// built-in reflectances. As the rows add up to 1, grey stays grey and white white, exactly. Where
-// channels cannot be told apart, of all best matrices it is that nearest the identity.
+// built-in reflectances. Since the rows add up to 1, grey stays grey and white white, exactly. If
+// channels are indistinguishable, the result is the best matrix nearest the identity.
 //
-// The error that is left is the distance in CIELAB (CIE 1976) between M v and t, white being D65:
-// no matrix is exact but for a camera whose responses are the observer's.
+// The remaining error is the distance in CIELAB (CIE 1976) between M v and t, with white D65: no
+// matrix is exact unless the camera's responses are the observer's.
 //
 // Primaries: IEC 61966-2-1:1999. Rows that keep white: G. D. Finlayson and M. S. Drew, "Constrained
 // least-squares regression in color spaces", Journal of Electronic Imaging 6(4), 484-493 (1997).
@@ -54,7 +54,7 @@ struct CameraToSrgb {
     [[nodiscard]] const ShownSurface& worst() const;
 };
 
-// light: E over the range's wavelengths. An InputError when a channel sees none of it.
+// light: E over the range's wavelengths. An InputError if a channel receives none of it.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Sensor& sensor,
                                           WavelengthRange range,
                                           const std::function<double(double lambda_nm)>& light);

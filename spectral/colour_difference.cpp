@@ -15,7 +15,7 @@ double lab_curve(double t) {
     return t > kKnee * kKnee * kKnee ? std::cbrt(t) : t / (3.0 * kKnee * kKnee) + 4.0 / 29.0;
 }
 
-// In degrees, 0 to 360; 0 where there is no hue.
+// In degrees, 0 to 360; 0 if there is no hue.
 double hue_deg(double a, double b) {
     if (a == 0.0 && b == 0.0) return 0.0;
     const double hue = std::atan2(b, a) * kDegreesPerRadian;
@@ -110,7 +110,7 @@ double srgb_decoded(double encoded) {
 
 double degrees_from_grey(const std::array<double, 3>& linear_rgb) {
     const auto [r, g, b] = linear_rgb;
-    // By the cross product with 1, 1, 1: the cosine is blind to small angles.
+    // By the cross product with 1, 1, 1, since the cosine loses small angles.
     const double across = std::hypot(g - b, b - r, r - g);
     const double along = r + g + b;
     if (across == 0.0 && along == 0.0) return std::nan("");

@@ -21,7 +21,7 @@ std::vector<std::string> all_names() {
     const std::vector<std::string> names = all_names();
     const std::string nearest = nearest_name(name, names);
     throw InputError(
-        "no built-in table is called '{}'{}; allowed: {}, or a file whose name ends in .csv",
+        "no built-in table is named '{}'{}; allowed: {}, or a file whose name ends in .csv",
         name,
         nearest.empty() ? "" : "; did you mean '" + nearest + "'?",
         fmt::join(names, ", "));
@@ -68,7 +68,7 @@ std::vector<Spectrum> load_curves(const std::string& name_or_path,
                                   CurveRole role,
                                   const std::filesystem::path& base_folder) {
     const Table table = load_table(name_or_path, base_folder);
-    // Headers of different roles can be the same, so a built-in's own word is asked first.
+    // Different roles can share a header, so a built-in table's own role is checked first.
     if (!names_a_file(name_or_path)) require_role(table, role);
     return curves_of(table, role);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tables that the program carries (spectral/data/*.csv, put into it by
-// cmake/Embed.cmake), and the loading of a table or curve by built-in name or file.
+// The built-in tables (spectral/data/*.csv, embedded by cmake/Embed.cmake), and loading a table or
+// curve by built-in name or file.
 //
 // Each built-in table states in its comments its title, role, quantity, unit, source, how the
 // numbers were obtained, their uncertainty, range and terms.
@@ -32,12 +32,12 @@ struct BuiltinTable {
 [[nodiscard]] Table builtin_table(std::string_view name);
 
 // A name that ends in ".csv" is a file in base_folder or below it (file_beside.h); any other is a
-// built-in.
+// built-in table.
 [[nodiscard]] bool names_a_file(std::string_view name_or_path);
 [[nodiscard]] Table load_table(const std::string& name_or_path,
                                const std::filesystem::path& base_folder);
 
-// The curves of a table, one per column. Throws InputError when the table is not of that role.
+// The curves of a table, one per column. Throws InputError if the table does not have that role.
 [[nodiscard]] std::vector<Spectrum> load_curves(const std::string& name_or_path,
                                                 CurveRole role,
                                                 const std::filesystem::path& base_folder);

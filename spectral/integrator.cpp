@@ -20,15 +20,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A block holds this many samples of spectral radiance at most (64 MiB of floats), and whole
-// blocks of OpenEXR's ZIP, in which POV-Ray's frames are.
+// A block holds at most this many samples of spectral radiance (64 MiB of floats), in whole blocks
+// of OpenEXR's ZIP, the compression of POV-Ray's frames.
 constexpr std::size_t kBlockSamples = std::size_t{1} << 24;
 
 struct Block {
     int first_row = 0;
     int rows = 0;
     std::size_t plane = 0;       // samples of one channel
-    std::vector<float> samples;  // R, G, B, then one plane a wavelength: spectral.exr's order
+    std::vector<float> samples;  // R, G, B, then one plane per wavelength, in spectral.exr's order
 
     [[nodiscard]] std::span<float> signal(std::size_t channel) {
         return std::span(samples).subspan(channel * plane, plane);
@@ -38,8 +38,8 @@ struct Block {
     }
 };
 
-// Reads a frame's rows, and hands out the samples of each wavelength in it, checked. frame: of the
-// light itself; the file is this or one of the veil's beside it.
+// Reads a frame's rows and returns the samples of each of its wavelengths, checked. frame: of the
+// direct light; the file is this one or one of the veil's next to it.
 template <typename Take>
 void read_frame(const fs::path& file,
                 const Manifest& manifest,
@@ -48,7 +48,7 @@ void read_frame(const fs::path& file,
                 const Take& take) {
     static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
                                                          kChannelNames.end());
-    // All channels at once: OpenEXR unpacks them together, whichever are asked for.
+    // All channels at once, since OpenEXR decompresses them together anyway.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
     ExrReader reader(file);
     check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
@@ -63,7 +63,7 @@ void read_frame(const fs::path& file,
     }
 }
 
-// Takes the exposures out.
+// Divides by the exposures.
 void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
     for (std::size_t f = 0; f < manifest.direct_frames(); ++f) {
         read_frame(image_path(folder, manifest.frames[f]),
@@ -95,8 +95,8 @@ void sum_signals(const Manifest& manifest, Block& block) {
     }
 }
 
-// How a frame of the veil counts at a wavelength: what a lobe takes off, and what is none of the
-// water's, of which every lobe's frame has as much.
+// How a veil frame contributes at a wavelength: what each lobe adds, and what is not scattered by
+// the water, which every lobe's frame contains.
 std::vector<double> signs_of(const PlannedWavelength& w, const ManifestPovrayVeil& veil) {
     std::vector<double> signs;
     double sum = 0.0;
@@ -108,7 +108,7 @@ std::vector<double> signs_of(const PlannedWavelength& w, const ManifestPovrayVei
     return signs;
 }
 
-// The veil that POV-Ray made, to radiance and signals.
+// Adds the veil that POV-Ray rendered to radiance and signals.
 void add_povray_veil(const fs::path& folder,
                      const Manifest& manifest,
                      const std::vector<float>& vignetting,
@@ -149,7 +149,7 @@ void add_povray_veil(const fs::path& folder,
     }
 }
 
-// Weights and exposures that no plan of ours has may lead beyond what floats hold.
+// Weights and exposures from a manifest that is not ours may overflow floats.
 void require_finite(const fs::path& folder, const Manifest& manifest, const Block& block) {
     const auto at =
         std::ranges::find_if_not(block.samples, [](float x) { return std::isfinite(x); });
@@ -159,8 +159,7 @@ void require_finite(const fs::path& folder, const Manifest& manifest, const Bloc
     const std::size_t channel = index / block.plane;
     const std::size_t pixel = index % block.plane;
     throw RunError(
-        "{}: {} comes out as {} at column {}, row {}; allowed: weights and exposures that keep it "
-        "finite",
+        "{}: {} is {} at column {}, row {}; allowed: weights and exposures that keep it finite",
         manifest_path(folder).string(),
         channel < kChannels
             ? std::string(kChannelNames[channel])
@@ -174,10 +173,10 @@ void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
     for (const ManifestFrame& frame : manifest.frames) {
         const fs::path file = image_path(folder, frame);
         if (!fs::exists(file)) {
-            throw RunError("{}: this frame is missing; render it first", file.string());
+            throw RunError("{}: the frame is missing; render it first", file.string());
         }
         if (frame.done() && sha256_of_file(file) != frame.image_sha256) {
-            throw RunError("{}: is not the image that the manifest notes", file.string());
+            throw RunError("{}: is not the image recorded in the manifest", file.string());
         }
     }
 }
@@ -207,7 +206,7 @@ ExrAttributes attributes_of(const Manifest& manifest) {
     return attributes;
 }
 
-// What the lens takes off, by pixel; empty: nothing.
+// The vignetting at each pixel; empty for none.
 std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.camera || manifest.camera->vignetting_sha256.empty()) return {};
     static const std::vector<std::string> kFactor{"Y"};
@@ -216,7 +215,7 @@ std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifes
     check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
     std::vector<float> factors = reader.planes(kFactor);
     if (sha256_of_floats(factors) != manifest.camera->vignetting_sha256)
-        throw RunError("{}: is not the vignetting that the manifest notes", file.string());
+        throw RunError("{}: is not the vignetting recorded in the manifest", file.string());
     return factors;
 }
 
@@ -229,18 +228,18 @@ void take_off(const std::vector<float>& vignetting, const Manifest& manifest, Bl
     }
 }
 
-// What the water scatters into the view, in a file beside the frames.
+// The veil, from a file next to the frames.
 class VeilReader {
   public:
     VeilReader(const fs::path& file, const Manifest& manifest, std::size_t planes)
         : channels_(veil_channels(manifest)) {
         if (!manifest.veil || manifest.veil->povray) return;
         if (manifest.veil->sha256.empty() || !fs::exists(file)) {
-            throw RunError("{}: the veil is missing; `aphotic render` makes it of its frames",
+            throw RunError("{}: the veil is missing; `aphotic render` makes it from its frames",
                            file.string());
         }
         if (sha256_of_file(file) != manifest.veil->sha256)
-            throw RunError("{}: is not the veil that the manifest notes", file.string());
+            throw RunError("{}: is not the veil recorded in the manifest", file.string());
         channels_.resize(kChannels + planes);
         reader_.emplace(file);
         check_size(

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From frames to images: the camera's signal and the spectral radiance of every pixel.
+// From frames to images: the camera's signal and each pixel's spectral radiance.
 //
 //   L(lambda_j) = 2^-e_j F_j
 //   S_c         = sum_j w_cj L(lambda_j)        and the veil's, where the water scatters
 //
-// The veil is a file's, or POV-Ray's, whose frames add up likewise, with weights of their own.
+// The veil comes from a file, or from POV-Ray's frames, which add up likewise with their own
+// weights.
 //
 // F_j   what the frame of wavelength j holds, in its channel      e_j   the frame's exposure
 // L     spectral radiance       [unit of the lamp's spectrum / (m^2 sr)]
@@ -28,18 +29,17 @@ namespace aphotic {
 // How many rows of the image are in memory at a time.
 [[nodiscard]] int rows_per_block(int width_px, std::size_t wavelengths);
 
-// Called with the share of the work that is done, 0 to 1.
+// Called with the share of the work done, 0 to 1.
 using ProgressReport = std::function<void(double)>;
 
-// Reads the frames of folder and writes folder/image.exr and folder/spectral.exr. A frame that
-// is missing, not the one that the manifest notes, or holds a bad sample is a RunError.
+// Reads the frames of folder and writes folder/image.exr and folder/spectral.exr. A frame that is
+// missing, is not the one recorded in the manifest, or has a bad sample is a RunError.
 CameraImage integrate(const std::filesystem::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report = {});
 
-// The signals alone, into images/image.exr: for weights of another rig than the frames', whose
-// radiance they do not hold. Its veil, where its manifest has one, is
-// veil_path(images).
+// Signals only, to images/image.exr, for weights of a rig other than the frames', whose radiance
+// they do not hold. The veil, if the manifest has one, is veil_path(images).
 CameraImage integrate_signals(const std::filesystem::path& folder,
                               const Manifest& manifest,
                               const std::filesystem::path& images,

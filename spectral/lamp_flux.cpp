@@ -11,7 +11,7 @@ namespace aphotic {
 
 namespace {
 
-// Of a function that is a parabola at most between the knots of the curves, by Simpson's rule.
+// Integrates a function that is at most a parabola between the curves' knots, by Simpson's rule.
 double integral(std::span<const Spectrum* const> curves,
                 WavelengthRange range,
                 const std::function<double(double)>& value) {
@@ -43,8 +43,8 @@ double luminous_flux_lm(const Spectrum& lamp) {
                                     integral({&curves[1], 1}, V.range(), efficiency);
     if (unseen > kMostUnseen) {
         throw InputError(
-            "{}: found a range of {:g} to {:g} nm, which leaves out {:.1f} % of what the eye "
-            "sees; allowed: up to {:.1f} %",
+            "{}: found a range of {:g} to {:g} nm, which leaves out {:.1f} % of the luminous flux; "
+            "allowed: up to {:.1f} %",
             lamp.name(),
             lamp.range().first_nm,
             lamp.range().last_nm,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The flux of a lamp by its spectrum:
+// A lamp's flux from its spectrum:
 //
 //   radiant    integral of S dlambda                     [W, for S in W/nm]
 //   luminous   683 lm/W  integral of S V dlambda         [lm]
@@ -10,8 +10,8 @@
 //
 // Exact for the tables: between the knots of both, S V is a parabola.
 //
-// Limit: a table that ends within the visible range has no luminous flux; what V has beyond it may
-// be kMostUnseen of V's integral.
+// Limit: a table that ends within the visible range has no luminous flux, except that it may miss
+// up to kMostUnseen of V's integral.
 #pragma once
 
 #include "spectral/spectrum.h"
@@ -23,7 +23,7 @@ inline constexpr double kMostUnseen = 0.005;
 
 [[nodiscard]] double radiant_flux_w(const Spectrum& lamp);
 
-// InputError where the table leaves out more than kMostUnseen.
+// InputError if the table leaves out more than kMostUnseen.
 [[nodiscard]] double luminous_flux_lm(const Spectrum& lamp);
 
 }  // namespace aphotic

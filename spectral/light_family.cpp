@@ -25,7 +25,7 @@ std::vector<Node> gauss_legendre(unsigned points) {
         const double slope = boost::math::legendre_p_prime(order, zero);
         const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
         nodes.push_back({.x = 0.5 * (1.0 + zero), .weight = weight});
-        // Boost lists the zeros that are not negative; the rule is symmetric.
+        // Boost lists only the zeros that are not negative; the rule is symmetric.
         if (zero != 0.0) nodes.push_back({.x = 0.5 * (1.0 - zero), .weight = weight});
     }
     std::ranges::sort(nodes, {}, &Node::x);
@@ -52,7 +52,7 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
     for (const auto& source : family.sources) {
         for (int i = 0; i < paths; ++i) {
             const double share = paths == 1 ? 0.0 : static_cast<double>(i) / (paths - 1);
-            // In even ratios, for paths may reach from metres to the horizon.
+            // In even ratios, since paths may reach from metres to the horizon.
             const double path_m =
                 family.shortest_path_m > 0.0
                     ? family.shortest_path_m *
@@ -70,7 +70,7 @@ double light(const LightFamily& family,
              const Member& member,
              double least_loss_per_m,
              double lambda_nm) {
-    // One sign of it stands for both: its size is what asks for points.
+    // One sign is enough: the number of points depends on its magnitude.
     const double tilt = family.tilt ? family.tilt->at(lambda_nm) : 0.0;
     return product_at(*member.source, lambda_nm) *
            std::exp((least_loss_per_m - family.water.attenuation_per_m(lambda_nm)) * member.path_m +
@@ -116,9 +116,9 @@ std::vector<double> knots_of(const Sensor& sensor,
     std::ranges::copy(family.water.curves(), std::back_inserter(curves));
     if (family.tilt) curves.push_back(&*family.tilt);
     std::vector<double> knots = union_of_knots(curves, range);
-    // kExactPoints are exact where light falls by exp(-8) and less. Where it falls farther between
-    // two knots, the brighter end is halved until it does not: what is left over is as much
-    // darker as it is steeper.
+    // kExactPoints are exact if light falls by at most exp(-8). If it falls further between two
+    // knots, the brighter end is halved until it does not; the rest is as much darker as it is
+    // steeper.
     constexpr double kMostFall = 8.0;
     const std::size_t tables_knots = knots.size();
     for (std::size_t i = 0; i + 1 < tables_knots; ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The shapes that a scene's light can take over wavelength, and how to integrate them.
+// The shapes over wavelength that a scene's light can have, and how to integrate them.
 //
-// Light that reaches the camera has gone a path of some length l and met one material:
+// Light that reaches the camera has travelled a path of length l and met one material:
 //
 //   f(lambda) = source(lambda) exp(-K(lambda) l),      T_c(l) = int f Q_c dlambda
 //
@@ -10,13 +10,12 @@
 // K       loss of the water [1/m]        l  lamp to floor to camera, in water [m]
 // Q_c     response of channel c          T_c  signal that such light gives
 //
-// Behind a dispersing port every wavelength shows a point of the floor of its own, where it may be
-// lit more or less by up to a factor exp(tilt(lambda)): then f takes in exp(t tilt), t from -1
-// to 1.
+// Behind a dispersing port, every wavelength sees a different point of the floor, which may be lit
+// more or less by up to a factor exp(tilt(lambda)): f then includes exp(t tilt), t from -1 to 1.
 //
-// A pixel's signal is a sum of such T_c with factors that are not negative. So a rule of
-// wavelengths and weights that errs by at most e on every member of the family errs by at most
-// e on every pixel.
+// A pixel's signal is a sum of such T_c with non-negative factors. A rule of wavelengths and
+// weights that errs by at most e on every member of the family therefore errs by at most e on every
+// pixel.
 #pragma once
 
 #include "spectral/bands.h"
@@ -39,11 +38,11 @@ struct LightFamily {
 };
 
 // An integration grid that is exact to the stated error for every member of the family: between
-// neighbouring knots of all tables each factor is a straight line, and Gauss-Legendre with as
-// many points as the interval needs takes their product. Summed over the intervals, the
-// differences from a rule of kExactPoints points stay under `error` times the channel's T_c, on
-// kExactPaths paths from the shortest to the longest, in even ratios. An interval over which the
-// longest path's light falls too steeply for that rule is cut into several.
+// neighbouring knots of all tables each factor is a straight line, and Gauss-Legendre with as many
+// points as the interval needs integrates their product. Summed over the intervals, the differences
+// from a rule of kExactPoints points stay under `error` times the channel's T_c, on kExactPaths
+// paths from the shortest to the longest, in even ratios. An interval over which the longest path's
+// light falls too steeply for that rule is cut into several.
 [[nodiscard]] std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
                                                              const LightFamily& family,
                                                              WavelengthRange range,

@@ -22,26 +22,26 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would like it
+using OrderedJson = nlohmann::ordered_json;  // as a reader of the file expects it
 
 namespace {
 
 constexpr const char* kFormat = "aphotic-manifest-5";
-// A thousand times what the manifest of 100 wavelengths takes.
+// A thousand times the size of a manifest of 100 wavelengths.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 
-// A digit that changed would make an image of other weights under the same promise, and be of the
+// A changed digit would give an image with other weights under the same promise, and still have the
 // right type.
 constexpr const char* kChecksum = "sha256";
 
-// Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
+// Titles are the user's: bytes that are not UTF-8 are replaced, not refused.
 template <class AnyJson>
 std::string text_of(const AnyJson& json) {
     constexpr int kIndent = 2;
     return json.dump(kIndent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-// Of all that the manifest holds beside it, in whatever order.
+// Over everything else in the manifest, in any order.
 std::string checksum_of(Json json) {
     json.erase(kChecksum);
     return sha256_of_text(text_of(json));
@@ -79,23 +79,23 @@ class Writer {
     OrderedJson& object_;
 };
 
-// What a value must be in JSON.
+// The JSON type of a value, in words.
 template <typename T>
 constexpr std::string_view kWords = "a list of numbers";
 template <>
-constexpr std::string_view kWords<std::string> = "a text";
+constexpr std::string_view kWords<std::string> = "a string";
 template <>
 constexpr std::string_view kWords<double> = "a number";
 template <>
 constexpr std::string_view kWords<bool> = "true or false";
 template <>
-constexpr std::string_view kWords<std::vector<std::string>> = "a list of texts";
+constexpr std::string_view kWords<std::vector<std::string>> = "a list of strings";
 template <>
 constexpr std::string_view kWords<std::array<double, kChannels>> = "three numbers";
 template <>
-constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of texts";
+constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of strings";
 
-// Reads the fields of one JSON object, and says which one is wrong.
+// Reads the fields of one JSON object and reports which one is wrong.
 class Reader {
   public:
     Reader(const Json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -176,7 +176,7 @@ class Reader {
     std::string where_;
 };
 
-// A frame's name becomes a file's name: nothing in it may lead out of the folder.
+// A frame's name becomes a file name: nothing in it may lead out of the folder.
 bool is_plain_name(std::string_view name) {
     const auto is_plain = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -196,7 +196,7 @@ void fields(const Visit& visit, Frame& frame, std::set<std::string>& names) {
     visit("name", frame.name);
     visit.require(
         "name", "letters, digits, '_', '-' and '.', not first", is_plain_name(frame.name));
-    visit.require("name", "a name that no other frame has", names.insert(frame.name).second);
+    visit.require("name", "a unique name", names.insert(frame.name).second);
     visit("scene_sha256", frame.scene_sha256);
     visit("image_sha256", frame.image_sha256);
 }
@@ -215,10 +215,10 @@ void fields(const Visit& visit, Scene& scene) {
     visit("sha256", scene.sha256);
     visit("materials", scene.materials);
     visit("shortest_path_m", scene.shortest_path_m);
-    visit.require("shortest_path_m", "a number over 0", scene.shortest_path_m > 0.0);
+    visit.require("shortest_path_m", "a number above 0", scene.shortest_path_m > 0.0);
     visit("longest_path_m", scene.longest_path_m);
     visit.require("longest_path_m",
-                  "a number not under shortest_path_m",
+                  "a number no smaller than shortest_path_m",
                   scene.longest_path_m >= scene.shortest_path_m);
 }
 
@@ -246,7 +246,7 @@ void fields(const Visit& visit, Veil& veil) {
 template <typename Visit, Is<PlannedWavelength> Wavelength>
 void fields(const Visit& visit, Wavelength& w, Before& before) {
     visit("lambda_nm", w.lambda_nm);
-    visit.require("lambda_nm", "increasing wavelengths over 0", w.lambda_nm > before.lambda_nm);
+    visit.require("lambda_nm", "increasing wavelengths above 0", w.lambda_nm > before.lambda_nm);
     before.lambda_nm = w.lambda_nm;
     visit("weight", w.weight);
     visit("frame", w.frame, 0, before.frames - 1);
@@ -339,7 +339,7 @@ void fields(const Visit& visit, Whole& manifest) {
     Before before{.frames = static_cast<int>(manifest.frames.size())};
     visit.list("wavelengths", manifest.wavelengths, before);
     visit.require("wavelengths", "at least one", !manifest.wavelengths.empty());
-    visit.require("frames", "as many as the lobes of the veil ask for", has_veil_frames(manifest));
+    visit.require("frames", "as many as the lobes of the veil require", has_veil_frames(manifest));
 }
 
 }  // namespace
@@ -413,7 +413,7 @@ Manifest read_manifest(const fs::path& folder) {
     Reader(json, file.string())(kChecksum, noted);
     if (noted != checksum_of(json)) {
         throw InputError(
-            "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
+            "{}: {}: does not match the rest, which was changed after it was written; allowed: a "
             "manifest as aphotic wrote it",
             file.string(),
             kChecksum);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manifest of a render: which frames there are, which wavelengths they hold, how they are
-// exposed and weighted, and which of them are done. It is all that the integrator needs, so
-// frames may be rendered elsewhere.
+// The manifest of a render: its frames, their wavelengths, exposures and weights, and which frames
+// are done. The integrator needs nothing else, so frames may be rendered elsewhere.
 //
 // In a render's folder DIR:
 //
@@ -11,8 +10,8 @@
 //   DIR/povray/frames/NAME.exr     its image
 //   DIR/povray/logs/NAME.log       what POV-Ray said
 //
-// A frame is done when its image was checked and its checksum noted; it belongs to the scene
-// whose checksum stands beside it.
+// A frame is done once its image has been checked and its checksum recorded; it belongs to the
+// scene whose checksum is recorded with it.
 #pragma once
 
 #include "image/frame_format.h"
@@ -29,7 +28,8 @@
 
 namespace aphotic {
 
-// Of any frame, and its negative: a double holds every power of two between them.
+// The limit of any frame's exponent, and its negative: a double holds every power of two between
+// them.
 inline constexpr int kMostExposureLog2 = 1000;
 
 struct ManifestFrame {
@@ -47,29 +47,29 @@ struct ManifestStrobe {
     int lamps_along = 1;
 };
 
-// A scene of the user's own that the frames show.
+// A user's scene that the frames show.
 struct ManifestScene {
     std::string file;
-    std::string sha256;                  // of it and what it includes
-    std::vector<std::string> materials;  // the names that it gives reflectances
+    std::string sha256;                  // of it and its includes
+    std::vector<std::string> materials;  // the names that it uses for reflectances
     double shortest_path_m = 0.0;        // of the light that it shows
     double longest_path_m = 0.0;
 };
 
 // How frames differ from the image.
 struct ManifestCamera {
-    // Of the factors that pixels take, as floats (vignetting_path); empty: none.
+    // Of the factors for each pixel, as floats (vignetting_path); empty for none.
     std::string vignetting_sha256{};
 };
 
-// Frames that POV-Ray wrote as PNG (image/frame_format.h).
+// For frames that POV-Ray wrote as PNG (image/frame_format.h).
 struct ManifestPng {
     int bits = 16;
 };
 
-// A veil that POV-Ray makes. Behind the frames of the wavelengths' direct light come as many of
-// each lobe, in their order, and then those of what shines without the water's scattering, to be
-// taken off.
+// A veil rendered by POV-Ray. The frames of direct light are followed by as many frames for each
+// lobe, in their order, and then by those of light that the water does not scatter, to be
+// subtracted.
 struct ManifestPovrayVeil {
     int samples = 0;                   // of a ray
     std::vector<std::string> lobes{};  // of the phase functions
@@ -77,28 +77,29 @@ struct ManifestPovrayVeil {
     double error = 0.0;  // measured beforehand, relative to the veil; no bound
 };
 
-// What the water scatters into the view: a file beside the frames (veil_path), or frames of
-// POV-Ray's.
+// The light that the water scatters into the view: a file next to the frames (veil_path), or
+// POV-Ray frames. If more than the bare floor is in view, the last frame holds no light but a fog
+// of distance fog_m in red: 1 - exp(-D / fog_m), which gives the distance D that each pixel sees.
 //
 // Where more than the bare floor is in view, the last frame holds no light but, in red, a fog of
 // the distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
 struct ManifestVeil {
-    std::string sha256{};  // of the file; empty: not made yet, or POV-Ray makes it
+    std::string sha256{};  // of the file; empty: not made yet, or rendered by POV-Ray
     double fog_m = 0.0;    // 0: the bare floor, and no such frame
     std::optional<ManifestPovrayVeil> povray{};
 };
 
-// What the model of water that scatters leaves out, as estimated (docs/reference/water.md): of each
-// channel's signal, rms over the image. No part of the promise.
+// The model error estimate for water that scatters (docs/reference/water.md): a share of each
+// channel's signal, rms over the image. Not part of the promise.
 struct ManifestModel {
     std::array<double, kChannels> error{};
 };
 
-// Of images and maps that have it: beside aphotic:promise.
+// Metadata of images and maps that have it, next to aphotic:promise.
 inline constexpr const char* kModelErrorAttribute = "aphotic:model_error";
 [[nodiscard]] std::string attribute_of(const ManifestModel& model);
 
-// Keys of the rig's text that the command line set, KEY=VALUE each.
+// Rig keys set on the command line, KEY=VALUE each.
 struct ManifestSettings {
     std::vector<std::string> keys{};
 };
@@ -111,32 +112,32 @@ struct Manifest {
     std::optional<ManifestSettings> rig_settings{};
     int width_px = 0;
     int height_px = 0;
-    std::optional<ManifestCamera> camera{};  // none: frames are as the image is
+    std::optional<ManifestCamera> camera{};  // none: frames are like the image
     std::optional<ManifestPng> png{};        // none: POV-Ray wrote half floats
-    // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
+    // The signal of the lamps themselves: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
     std::array<double, kChannels> lamp_signal{};
     // How the wavelengths were chosen: "fitted", "equal bands" or "listed".
     std::string method;
-    double tolerance = 0.0;  // asked of a fitted choice; else 0
-    // The error that the wavelengths and their weights make, and how they amplify the frames' own
+    double tolerance = 0.0;  // requested for fitted wavelengths; else 0
+    // The error of the wavelengths and their weights, and their amplification of the frames' own
     // error: together the promise (spectral/quadrature_fit.h).
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
-    // Why the image has no promise, for a scene of the user's that voids it; empty: it has. Quality
-    // is then that of the spectra which the scene names, and not written.
+    // Why the image has no promise, for a user's scene that voids it; empty if it has one. Quality
+    // is then that of the spectra named in the scene, and not written.
     std::vector<std::string> no_promise{};
-    // By part of the rig, in words and numbers, all that its frames depend on but for sources and
-    // water: frames serve another rig when it is equal (rig/geometry_signature.h).
+    // Everything in the rig that its frames depend on except sources and water, by part, in words
+    // and numbers: frames serve another rig if it is equal (rig/geometry_signature.h).
     std::map<std::string, std::string> geometry;
     std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
     std::optional<ManifestScene> scene{};   // none: the rig's own floor
     std::optional<ManifestVeil> veil{};     // none: the water does not scatter
-    std::optional<ManifestModel> model{};   // none: nor that, or not estimated
+    std::optional<ManifestModel> model{};   // none: the same, or not estimated
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
 
-    // Of the wavelengths' direct light, which are the first.
+    // The direct light's wavelengths, which come first.
     [[nodiscard]] std::size_t direct_frames() const;
 
     [[nodiscard]] FrameFormat frame_format() const {
@@ -164,10 +165,10 @@ struct Manifest {
 [[nodiscard]] std::filesystem::path image_path(const std::filesystem::path& folder,
                                                const ManifestFrame& frame);
 
-// What the lens takes off, a factor a pixel: an EXR of one channel, Y.
+// The vignetting, one factor per pixel: an EXR with one channel, Y.
 [[nodiscard]] std::filesystem::path vignetting_path(const std::filesystem::path& folder);
 
-// The veil of every pixel, to be added: R, G, B as signals, and a plane of radiance for each
+// The veil at every pixel, to be added: R, G, B as signals, and a plane of radiance for each
 // wavelength, in the manifest's order.
 [[nodiscard]] std::filesystem::path veil_path(const std::filesystem::path& folder);
 [[nodiscard]] std::vector<std::string> veil_channels(const Manifest& manifest);
@@ -177,7 +178,7 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
 // Every value is checked; an InputError names the file and the key.
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
 
-// The same from text; file_name stands in messages.
+// The same from text; file_name is for messages.
 [[nodiscard]] Manifest parse_manifest(const std::string& file_name, std::string_view text);
 
 }  // namespace aphotic

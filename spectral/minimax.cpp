@@ -27,7 +27,7 @@ MinimaxFit minimax_fit(const MatrixXd& a, const VectorXd& b, const MinimaxOption
                     .weights = options.weights};
     ArrayXd& u = best.weights;
     const double even = 1.0 / static_cast<double>(rows);
-    // A weight that has gone to zero would never come back.
+    // A weight of zero would stay zero.
     constexpr double kEvenShare = 0.1;
     u = u.size() == rows ? ArrayXd((1.0 - kEvenShare) * u + kEvenShare * even)
                          : ArrayXd::Constant(rows, even);
@@ -55,7 +55,7 @@ MinimaxFit minimax_fit(const MatrixXd& a, const VectorXd& b, const MinimaxOption
         if (std::sqrt((u * residual.square()).sum()) > options.give_up) break;
         const ArrayXd next = u * residual;
         const double sum = next.sum();
-        if (!(sum > 0.0)) break;  // exact, or a NaN: nothing left to weigh
+        if (!(sum > 0.0)) break;  // exact, or NaN: nothing left to weight
         u = next / sum;
     }
     return best;
@@ -75,7 +75,7 @@ ArrayXd minimax_lower_bounds(const MatrixXd& a,
         left -= q * (q.transpose() * left);
         apart -= q * (q.transpose() * apart);
     }
-    // What a candidate takes away of what the others left.
+    // How much a candidate reduces the residual of the others.
     const ArrayXd gain = (apart.transpose() * left).array().square() /
                          apart.colwise().squaredNorm().transpose().array();
     return (left.squaredNorm() - gain.isFinite().select(gain, 0.0)).max(0.0).sqrt();

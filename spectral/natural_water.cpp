@@ -15,7 +15,7 @@
 namespace aphotic {
 namespace {
 
-constexpr double kStep_nm = 5.0;  // a straight line errs by 1e-4 of b_sw between
+constexpr double kStep_nm = 5.0;  // a straight line between them errs by 1e-4 of b_sw
 
 constexpr WavelengthRange kPhytoplankton_nm{400.0, 700.0};
 constexpr double kPhytoplanktonStep_nm = 10.0;
@@ -54,7 +54,7 @@ std::vector<double> even_steps(WavelengthRange range) {
     return lambda_nm;
 }
 
-// What is in the water of a type besides water, at the type's own wavelengths.
+// The constituents of a water type besides water, at the type's own wavelengths.
 Spectrum besides(const Spectrum& all, const std::function<double(double)>& water) {
     return sampled(all.name(), {all.lambda_nm().begin(), all.lambda_nm().end()}, [&](double nm) {
         return std::max(0.0, all.at(nm) - water(nm));
@@ -100,7 +100,7 @@ void take_type(const Spectrum& absorption,
 
 void take_constituents(const Constituents& constituents, Water& water) {
     constexpr double kParticles_nm = 550.0;
-    constexpr double kClear = 2.0;  // Chl from which b_p has no slope
+    constexpr double kClear = 2.0;  // Chl from which b_p is flat over wavelength
     const double chl = constituents.chlorophyll_mg_m3;
     const double log_chl = std::log10(chl);
     const Spectrum pure = pure_water();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Natural waters, as absorption and scatterers: sea water itself, and the particles in it.
+// Natural waters as absorption and scatterers: sea water itself, and its particles.
 //
 // By type: a and b of a table of role "water type", water included, as the sources measured or
-// inferred them for Jerlov's types. Their wavelengths are coarse, and in the red their a falls
-// under pure water's, so what is dissolved or afloat is taken from them and water from its own
+// inferred them for Jerlov's types. Their wavelengths are coarse, and their a is below pure water's
+// in the red, so only the dissolved and suspended matter is taken from them, and water from its own
 // tables:
 //
 //   a = a_w + max(0, a_type - a_w)         b_particles = max(0, b_type - b_sw)
 //
-// By constituents, for waters where all follows from the chlorophyll (case 1), Chl [mg/m^3]:
+// By constituents, for waters in which everything follows from the chlorophyll (case 1), Chl
+// [mg/m^3]:
 //
 //   a   = a_w + 0.06 A(lambda) Chl^0.65 + a_440 exp(-0.014 (lambda - 440))
 //   b_p = particles 0.416 Chl^0.766 (lambda/550)^v
@@ -44,13 +45,13 @@ struct Constituents {
     double particles = 1.0;
 };
 
-// a_440 where it is not told.
+// a_440 if it is not given.
 [[nodiscard]] double case_1_cdom_440_per_m(double chlorophyll_mg_m3);
 
-// Sea water alone, over the range of its index.
+// Sea water only, over the range of its index.
 [[nodiscard]] Scatterer seawater_scatterer(double salinity_psu, double temperature_c);
 
-// absorption and scattering: a water type's.
+// absorption and scattering: those of a water type.
 void take_type(const Spectrum& absorption,
                const Spectrum& scattering,
                const PhaseFunction& particles,

@@ -13,7 +13,8 @@ constexpr unsigned kPanelPoints = 10;
 constexpr double kPanelFall = 4.0;
 constexpr double kSpent = 50.0;
 
-// An interval over which the longest path's light falls by `fall`, the shortest's by `least_fall`.
+// An interval over which the longest path's light falls by `fall`, and the shortest's by
+// `least_fall`.
 void add_interval(double bright_nm,
                   double dark_nm,
                   double fall,
@@ -65,7 +66,7 @@ std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> pa
     for (const WavelengthRange& panel : panels) {
         const double middle_nm = 0.5 * (panel.first_nm + panel.last_nm);
         const double half_nm = 0.5 * (panel.last_nm - panel.first_nm);
-        // Boost lists the abscissae that are not negative; the rule is symmetric.
+        // Boost lists only the abscissae that are not negative; the rule is symmetric.
         for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
             const double away_nm = half_nm * Gauss::abscissa()[k];
             const double width_nm = half_nm * Gauss::weights()[k];

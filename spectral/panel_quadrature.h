@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Integrals over wavelength for those who check a plan: no grid that was made to measure, and no
-// line shared with the fit's (spectral/light_family.h).
+// Integrals over wavelength for checks of a plan: no purpose-made grid, and no code shared with the
+// fit's (spectral/light_family.h).
 //
 //   int f(lambda) dlambda ~ sum_i width_i f(lambda_i)     f = line line ... line exp(-x)
 //
-// Between neighbouring knots of all tables every factor of a signal is a straight line, but for the
+// Between neighbouring knots of all tables, every factor of a signal is a straight line except the
 // water's exponential. Over a panel, Gauss's rule of n points is exact for 2n - 1 - p powers of
-// that exponential, p the number of lines; and since no line is negative and no width is, what it
-// misses of the exponential it misses relative to the panel's integral, however steep the lines
-// are: a filter may rise over 300 decades. Over a panel on which x changes by 4, ten points and six
-// lines leave 1e-10.
+// that exponential, with p the number of lines; and since no line and no width is negative, its
+// error is relative to the panel's integral, however steep the lines are: a filter may rise over
+// 300 decades. Over a panel on which x changes by 4, ten points and six lines leave 1e-10.
 //
-// Nearest to the bright end of an interval panels are so short for the longest path. Farther off,
-// where that path has lost e^-50, they are for shorter paths, and grow with the distance. They end
-// where the shortest path has lost as much.
+// At the bright end of an interval, panels are this short for the longest path. Farther off, where
+// that path has lost e^-50, they suit shorter paths and grow with the distance. They end where the
+// shortest path has lost as much.
 #pragma once
 
 #include "spectral/spectrum.h"
@@ -30,7 +29,7 @@ struct QuadratureNode {
     double width_nm = 0.0;
 };
 
-// tables: all but the water's, which light goes through for shortest_path_m to longest_path_m.
+// tables: all except the water's, through which light travels shortest_path_m to longest_path_m.
 // tilt: a further exponent, or null.
 [[nodiscard]] std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
                                                         const Water& water,
@@ -39,7 +38,7 @@ struct QuadratureNode {
                                                         const Spectrum* tilt,
                                                         WavelengthRange range);
 
-// Ten points of each.
+// Ten points each.
 [[nodiscard]] std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> panels);
 
 }  // namespace aphotic

@@ -19,7 +19,7 @@ double square(double x) {
 }
 
 double per_sr(const HenyeyGreenstein& phase, double psi_rad) {
-    // 1 + g^2 - 2 g cos(psi), without the loss of a difference ahead.
+    // 1 + g^2 - 2 g cos(psi), without cancellation.
     const double base = square(1.0 - phase.g) + 4.0 * phase.g * square(std::sin(0.5 * psi_rad));
     return (1.0 - phase.g * phase.g) / (4.0 * pi * base * std::sqrt(base));
 }
@@ -32,7 +32,7 @@ double share(const HenyeyGreenstein& phase, double psi_rad) {
     return 2.0 * (1.0 + g) * s2 / (root * (root + 1.0 - g));
 }
 
-// What both formulas of Fournier and Forand are made of.
+// The terms shared by both formulas of Fournier and Forand.
 struct ForandTerms {
     double nu;
     double s2;         // sin^2(psi/2)
@@ -56,7 +56,7 @@ ForandTerms terms_of(const FournierForand& phase, double psi_rad) {
 // The two brackets of p, over (1 - d)^2. At d = 1 both are 0/0: near it, by the binomial series of
 // d^nu in the excess.
 std::pair<double, double> forand_brackets(const ForandTerms& t) {
-    constexpr double kNear = 0.02;  // whose tenth power is lost in rounding
+    constexpr double kNear = 0.02;  // whose tenth power is below rounding
     constexpr int kTerms = 10;
     if (std::abs(t.excess) > kNear) {
         const double lacks = 1.0 - t.d_to_nu;
@@ -137,8 +137,8 @@ double share_between(const PhaseTable& table, std::size_t i, double from_rad, do
     return Gauss::integrate(by_log, std::log(from_rad), std::log(to_rad));
 }
 
-// Within an angle that is not over the first row's: the first two rows' law, with sin(psi) to its
-// second term.
+// Within an angle no larger than the first row's: the law of the first two rows, with sin(psi) to
+// its second term.
 double share_below(const PhaseTable& table, double psi_rad) {
     if (psi_rad <= 0.0) return 0.0;
     const double a = table.angle_rad[0];
@@ -150,7 +150,7 @@ double share_below(const PhaseTable& table, double psi_rad) {
            (1.0 / (2.0 + slope) - square(psi_rad) / (6.0 * (4.0 + slope)));
 }
 
-// The row before the angle, which is not below the first.
+// The row before the angle, which is at least the first.
 std::size_t row_before(const PhaseTable& table, double psi_rad) {
     const auto next = std::ranges::upper_bound(table.angle_rad, psi_rad);
     const auto i = static_cast<std::size_t>(next - table.angle_rad.begin());
@@ -187,7 +187,7 @@ PhaseFunction fournier_forand(double backscatter_ratio) {
     const auto of_slope = [](double slope) {
         return FournierForand{.index = 1.01 + 0.1542 * (slope - 3.0), .slope = slope};
     };
-    double low = 3.01;  // which scatters back less
+    double low = 3.01;  // which scatters less back
     double high = 5.0;
     constexpr int kHalvings = 60;
     for (int i = 0; i < kHalvings; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which way scattered light goes.
+// The directions of scattered light.
 //
 //   p(psi)   share of the scattered light per solid angle at the angle psi off its way   [1/sr]
 //   F(psi)   share within psi:   F(psi) = 2 pi int_0^psi p(psi') sin(psi') dpsi',   F(pi) = 1
@@ -9,22 +9,22 @@
 //
 //   p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos(psi))^1.5)
 //
-// Fournier and Forand (1994, in the form of Fournier and Jonasz 1999), of particles of the relative
-// index n whose sizes follow a power law of the slope mu:
+// Fournier and Forand (1994, in the form of Fournier and Jonasz 1999), for particles of relative
+// index n whose sizes follow a power law of slope mu:
 //
 //   p = ( nu (1 - d) - (1 - d^nu) + (d (1 - d^nu) - nu (1 - d)) / s^2 ) / (4 pi (1 - d)^2 d^nu)
 //       + (1 - D^nu) (3 cos^2(psi) - 1) / (16 pi (D - 1) D^nu)
 //
 // with nu = (3 - mu)/2, s = sin(psi/2), d = 4 s^2 / (3 (n - 1)^2), and D = d at psi = pi. F is
-// known in closed form. Of one number, the share that is scattered back, along the line
-// n = 1.01 + 0.1542 (mu - 3) (Mobley, Sundman and Boss 2002): fournier_forand().
+// known in closed form. fournier_forand() takes one number, the backscattered share, along the line
+// n = 1.01 + 0.1542 (mu - 3) (Mobley, Sundman and Boss 2002).
 //
 // Molecular: sea water's own, with the depolarisation ratio delta (0.039, Zhang, Hu and He 2009):
 //
 //   p = 3 (1 + P cos^2(psi)) / (4 pi (3 + P)),      P = (1 - delta)/(1 + delta)
 //
-// Table: a power law of the angle between neighbouring rows, and below the first row as between the
-// first two; linear where a row has the angle or the value 0. It is scaled to F(pi) = 1.
+// Table: a power law of the angle between neighbouring rows, extended from the first two rows below
+// the first; linear where a row has angle or value 0. It is scaled to F(pi) = 1.
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@
 namespace aphotic {
 
 struct HenyeyGreenstein {
-    double g = 0.0;  // -1 to 1, neither included
+    double g = 0.0;  // -1 to 1, both excluded
 };
 
 struct FournierForand {
@@ -53,7 +53,7 @@ struct PhaseTable {
 };
 
 struct PhaseFunction {
-    std::string name;  // as a rig has it
+    std::string name;  // as in the rig file
     std::variant<HenyeyGreenstein, FournierForand, MolecularScattering, PhaseTable> kind{};
 
     [[nodiscard]] double at(double psi_rad) const;
@@ -63,7 +63,7 @@ struct PhaseFunction {
     [[nodiscard]] double backscatter_ratio() const;
 };
 
-// Of the line above; the ratio lies within kLeastBackscatter and kMostBackscatter.
+// On the line above; the ratio lies within kLeastBackscatter and kMostBackscatter.
 [[nodiscard]] PhaseFunction fournier_forand(double backscatter_ratio);
 inline constexpr double kLeastBackscatter = 0.0005;
 inline constexpr double kMostBackscatter = 0.4;

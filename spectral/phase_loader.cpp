@@ -53,7 +53,7 @@ void require_angles_and_values(const Table& table) {
             table.name, last, "found no scattering; allowed: three rows or more, not all 0");
 }
 
-// Below the first row a power law goes on; steeper than psi^-2 it has no integral.
+// Below the first row the power law is extrapolated; steeper than psi^-2 it has no integral.
 void require_integrable(const Table& table) {
     constexpr double kSteepest = -1.95;
     const std::vector<double>& a = table.rows[0].fields;
@@ -61,13 +61,12 @@ void require_integrable(const Table& table) {
     if (a[0] == 0.0 || a[1] == 0.0 || b[1] == 0.0) return;
     const double slope = std::log(b[1] / a[1]) / std::log(b[0] / a[0]);
     if (slope > kSteepest) return;
-    fail_at_line(
-        table.name,
-        table.rows[1].line,
-        "found a fall with the angle to the power {:.3g} in the first two rows, which goes "
-        "on to 0 degrees; allowed: above {}, or a first row at 0",
-        slope,
-        kSteepest);
+    fail_at_line(table.name,
+                 table.rows[1].line,
+                 "found a power law of exponent {:.3g} in the first two rows, which is "
+                 "extrapolated to 0 degrees; allowed: above {}, or a first row at 0",
+                 slope,
+                 kSteepest);
 }
 
 }  // namespace
@@ -87,8 +86,8 @@ PhaseFunction builtin_phase(const std::string& name) {
     const std::vector<std::string> names = builtin_phase_names();
     const std::string nearest = nearest_name(name, names);
     throw InputError(
-        "no built-in phase function is called '{}'{}; allowed: {}, or a file whose name "
-        "ends in .csv",
+        "no built-in phase function is named '{}'{}; allowed: {}, or a file whose name ends in "
+        ".csv",
         name,
         nearest.empty() ? "" : "; did you mean '" + nearest + "'?",
         fmt::join(names, ", "));

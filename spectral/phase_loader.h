@@ -5,8 +5,8 @@
 //   angle_deg,phase_function_per_sr        0 or more, up to 180, increasing; 0 or more, of any
 //   scale
 //
-// Built in are 'petzold' (the average particle), and with what water scatters 'petzold-clear',
-// 'petzold-coast' and 'petzold-harbour'; and 'sea-water', a formula.
+// Built in are 'petzold' (the average particle), 'petzold-clear', 'petzold-coast' and
+// 'petzold-harbour', which include the water's scattering, and 'sea-water', a formula.
 #pragma once
 
 #include "spectral/curve_loader.h"
@@ -21,7 +21,7 @@ namespace aphotic {
 [[nodiscard]] std::span<const BuiltinTable> builtin_phase_tables();
 [[nodiscard]] std::vector<std::string> builtin_phase_names();
 
-// Throws InputError for an unknown name, and one with the line for a table that is none.
+// Throws InputError for an unknown name, and with the line for an invalid table.
 [[nodiscard]] PhaseFunction builtin_phase(const std::string& name);
 [[nodiscard]] PhaseFunction phase_of(const Table& table);
 

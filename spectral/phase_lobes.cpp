@@ -14,10 +14,10 @@ namespace aphotic {
 namespace {
 
 constexpr int kAngles = 241;
-// Beyond these a lobe is a spike, or all but alike the next.
+// Beyond these, a lobe is a spike, or nearly equal to the next.
 constexpr double kMostForward = 0.98;
 constexpr double kMostBackward = -0.85;
-// What a lobe's size costs, against the error at an angle.
+// The penalty on a lobe's size, against the error at an angle.
 constexpr double kSizeCosts = 1e-3;
 
 PhaseFunction rayleigh() {
@@ -52,7 +52,7 @@ struct Share {
     double share;
 };
 
-// None for a function that is no sum of a few lobes.
+// Empty for a function that is not a sum of a few lobes.
 std::vector<Share> exact_shares(const PhaseFunction& phase, std::vector<PhaseFunction>& lobes) {
     if (const auto* hg = std::get_if<HenyeyGreenstein>(&phase.kind)) {
         return {{.lobe = place_of(henyey_greenstein(hg->g), lobes), .share = 1.0}};
@@ -67,7 +67,7 @@ std::vector<Share> exact_shares(const PhaseFunction& phase, std::vector<PhaseFun
     return {};
 }
 
-// Of one phase function: least squares of sum_m share_m q_m / p - 1.
+// For one phase function: least squares of sum_m share_m q_m / p - 1.
 class Fit {
   public:
     Fit(const PhaseFunction& phase, const Eigen::ArrayXd& angle_rad)
@@ -146,7 +146,7 @@ std::optional<PhaseFunction> next_lobe(std::span<const Fit> fits,
     return best;
 }
 
-// Moves the lobes from the first on, each in turn, by steps that halve.
+// Moves the lobes from the first on, one at a time, by steps that halve.
 void refine(std::span<const Fit> fits, std::size_t first, std::vector<PhaseFunction>& lobes) {
     constexpr double kFirstStep = 0.04;
     constexpr double kLastStep = 1e-3;

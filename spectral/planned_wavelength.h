@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All that is planned for one wavelength, from its choice to the manifest: the plan sets what it
-// weighs and where it stands, the scenes set how it is exposed, the integrator uses both.
+// Everything planned for one wavelength, from its choice to the manifest: the plan sets its weights
+// and frame, the scenes set its exposure, the integrator uses both.
 //
 //   S_c = sum_j w_cj L(lambda_j),     L(lambda_j) = 2^-e_j F_j
 //
-// and the same of the veil, where it has frames.
+// and the same for the veil, if it has frames.
 //
 // S_c  signal of channel c      L  spectral radiance      F_j  what the frame holds, in its channel
 #pragma once
@@ -19,22 +19,22 @@
 
 namespace aphotic {
 
-// What sources and water do to light at one wavelength, apart from geometry: a pixel's radiance is
-// a sum of flux reflectance exp(-attenuation path), and of flux exp(-attenuation path) where
-// something has a highlight.
+// The effect of sources and water on light at one wavelength, apart from geometry: a pixel's
+// radiance is a sum of flux reflectance exp(-attenuation path), and of flux exp(-attenuation path)
+// where something has a highlight.
 struct SourceLight {
     double attenuation_per_m = 0.0;
     std::vector<double> flux{};         // of each strobe, its power included
     std::vector<double> reflectance{};  // of the floor, then of each further material
 };
 
-// Of a veil that POV-Ray makes, in frames of its own: one for each lobe of the water's phase
+// For a veil that POV-Ray renders, in its own frames: one for each lobe of the water's phase
 // functions (spectral/phase_lobes.h).
 struct PlannedVeil {
-    std::vector<double> scattering_per_m{};  // by lobe; of either sign, which the sum takes
+    std::vector<double> scattering_per_m{};  // by lobe; of either sign, as the sum allows
     std::array<double, kChannels> weight{};  // of the veil's radiance
     int exposure_log2 = 0;
-    double radiance_bound = 0.0;  // of what it is exposed for
+    double radiance_bound = 0.0;  // relative to the level it is exposed for
 };
 
 struct PlannedWavelength {
@@ -46,7 +46,7 @@ struct PlannedWavelength {
     SourceLight light{};                     // with which the frame is rendered
     int exposure_log2 = 0;                   // e_j
     double radiance_bound = 0.0;             // of L(lambda_j) in view
-    std::optional<PlannedVeil> veil{};       // none: POV-Ray makes no veil
+    std::optional<PlannedVeil> veil{};       // none: POV-Ray renders no veil
 };
 
 }  // namespace aphotic

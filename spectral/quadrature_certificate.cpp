@@ -26,7 +26,7 @@ Real exact_source_at(const std::vector<Spectrum>& source, double lambda_nm) {
     return value;
 }
 
-// Everything that stands under the integral, at every node.
+// All integrands at every node.
 struct Nodes {
     Array attenuation_per_m;
     Array tilt;
@@ -85,7 +85,7 @@ std::vector<double> paths_of(const LightFamily& family) {
     return paths_m;
 }
 
-// By member: signals in R, G, B and all its light; what the rule makes of its frames, and the same
+// By member: signals in R, G, B and all its light; the rule's result from its frames, and the same
 // without signs.
 struct Members {
     Matrix signals;
@@ -164,7 +164,7 @@ std::array<RuleQuality, kChannels> certified_quality(const Sensor& sensor,
             const Real right = members.signals(i, c);
             if (response(i) > kBlind * best) {
                 const Real off = std::abs(members.found(i, c) / right - 1.0L);
-                // What is no number is the largest of errors.
+                // NaN is the largest of errors.
                 error = std::isnan(off) ? kInfinite : std::max(error, off);
                 amplification = std::max(amplification, members.amplified(i, c) / right);
             } else if (members.amplified(i, c) > kLeak * best * light(i)) {

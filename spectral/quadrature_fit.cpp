@@ -19,8 +19,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kGridError = 1e-9;
-// Rows of a fit: enough paths to see every swing of the error, not so many that ten materials
-// wait for them.
+// Rows of a fit: enough paths to see every swing of the error, yet few enough for ten materials.
 constexpr int kMostPaths = 24;
 constexpr int kLeastPaths = 10;
 constexpr int kRows = 240;
@@ -29,17 +28,17 @@ const std::vector<double> kNoTilt{0.0};
 
 constexpr int kIterations = 60;
 constexpr int kQuickIterations = 8;
-// Held down harder and harder, until the promise no longer gains.
+// Weights are penalised more and more until the promise no longer improves.
 constexpr std::array kRidges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
-// From 0 to 1, both ends taken in; Chebyshev's spacing, closer together towards the ends, where
-// a fit tends to err most, or even.
+// From 0 to 1, both included; Chebyshev's spacing, denser towards the ends, where a fit tends to
+// err most, or even.
 ArrayXd chebyshev(int count) {
     return 0.5 - 0.5 * (ArrayXd::LinSpaced(count, 0.0, std::numbers::pi)).cos();
 }
 
-// A share of the way from the shortest to the longest path, in even ratios: paths may reach from
-// metres to the horizon.
+// A share of the way from the shortest to the longest path, in even ratios, since paths may reach
+// from metres to the horizon.
 ArrayXd paths_at(const LightFamily& family, const ArrayXd& share) {
     if (!(family.shortest_path_m > 0.0)) return share * family.longest_path_m;
     const double ratio = family.longest_path_m / family.shortest_path_m;
@@ -140,7 +139,7 @@ QuadratureFitter::Sample QuadratureFitter::sample(ArrayXd paths_m,
             }
         }
     }
-    // Members by sources: where a column is dark beside the brightest, it is black.
+    // Members by sources: where a column is dark relative to the brightest, it is black.
     const Index each = members / sources;
     const ArrayXd brightest = sample.light.reshaped(each, sources).rowwise().maxCoeff();
     for (Index i = 0; i < members; ++i) {
@@ -266,7 +265,7 @@ FittedRule QuadratureFitter::fit(std::span<const FrameLight> frames, double fram
                 rows, VectorXd::Ones(rows.rows()), {.iterations = kIterations, .ridge = ridge});
             RuleQuality quality = quality_of(check, fit.x);
             quality.error += tilt_shape_error();
-            // Freely amplified rounding is no reason to hold down.
+            // Amplification that costs nothing is no reason to penalise weights.
             const double cost =
                 quality.error + std::max(quality.amplification, kFreeAmplification) * frame_error;
             if (!(cost < best)) continue;
@@ -341,7 +340,7 @@ double QuadratureFitter::quick_cost(std::span<const Column* const> columns,
 
 namespace {
 
-// Lines may be too narrow to be found by their shares: every stretch of light has kLeastPlaces, as
+// Lines may be too narrow to be found by their shares: every stretch of light gets kLeastPlaces, as
 // far as it has nodes, at even shares of its light.
 void add_places_in_lines(const ArrayXd& share, std::vector<Index>& places) {
     constexpr int kLeastPlaces = 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Weights that make a few wavelengths stand for the whole spectrum of a family of light:
+// Weights with which a few wavelengths represent the whole spectrum of a family of light:
 //
 //   S_c = int L Q_c dlambda  ~  sum_j w_cj L_j
 //
@@ -12,21 +12,22 @@
 // T_c   the member's signal in channel c, integrated exactly (reference_grid)
 // frame_error   the relative error of what a frame holds, for the most part its half floats'
 //
-// A pixel's light is a sum of members with factors that are not negative, so no pixel errs by more
-// than the promise, relative to its own signal. Fitted weights make e_c the least that there is
-// (spectral/minimax.h); where that takes so large weights of either sign that the promise
-// suffers, they are held down.
+// A pixel's light is a sum of members with non-negative factors, so no pixel errs by more than the
+// promise, relative to its own signal. Fitted weights make e_c as small as possible
+// (spectral/minimax.h); if that needs weights of either sign so large that the promise suffers,
+// they are penalised.
 //
-// A channel may be blind to a member: it sees less than kBlind of what it sees, light for light, of
-// the member that it sees best. Such light counts for nothing, provided that it gets no weight
-// either: a wavelength at which it shines has none in that channel. Nor has one so dark that it
-// would need a weight of over kMostWeight times the channel's whole response to count.
+// A channel may be blind to a member: its response to it is less than kBlind, light for light, of
+// its response to the member that it sees best. Such light is ignored, provided that it gets no
+// weight either: a wavelength at which it shines has none in that channel. Nor has a wavelength so
+// dark that it would need a weight over kMostWeight times the channel's whole response to
+// contribute.
 //
-// Behind a port pixels change along curves of their own, of which the family's tilt is the largest:
+// Behind a port, pixels vary along curves of their own, of which the family's tilt is the largest:
 // kTiltShape of half its span is added to the error for their shapes.
 //
-// The frames need not be of the family's own water, lamps or materials: whatever light they
-// hold, as long as it came by the same geometry, serves as well as it spans the family.
+// The frames need not show the family's own water, lamps or materials: any light that came by the
+// same geometry serves as well as it spans the family.
 #pragma once
 
 #include "spectral/light_family.h"
@@ -39,8 +40,8 @@
 
 namespace aphotic {
 
-// Half floats round by 2^-11 at most; the rest is for single-precision colours and POV-Ray's
-// way to the inverse square law.
+// Half floats round by at most 2^-11; the rest is for single-precision colours and POV-Ray's
+// computation of the inverse square law.
 inline constexpr double kFrameError = 0x1p-11 + 2e-6;
 
 struct RuleQuality {
@@ -66,35 +67,34 @@ struct FittedRule {
     }
 };
 
-// What the frame of one wavelength knows of light.
+// The light in the frame of one wavelength.
 struct FrameLight {
     double lambda_nm = 0.0;
     double attenuation_per_m = 0.0;
     std::vector<double> sources{};  // in the order of LightFamily::sources
-    double tilt = 0.0;              // LightFamily::tilt at the wavelength whose indices it has
+    double tilt = 0.0;              // LightFamily::tilt at the wavelength of its indices
 };
 
 class QuadratureFitter {
   public:
     QuadratureFitter(const Sensor& sensor, const LightFamily& family, WavelengthRange range);
 
-    // A frame of the family's own water, lamps and materials.
+    // A frame with the family's own water, lamps and materials.
     [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
 
-    // The weights, and their error on kCheckPaths paths, apart from those of the fit, and behind a
-    // port on twice as many tilts.
+    // The weights, and their error on kCheckPaths paths that the fit did not use, and behind a port
+    // on twice as many tilts.
     [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
 
-    // The same of weights that are given; the error is infinite where a channel's weights show it
-    // light that it is blind to.
+    // The same for given weights; the error is infinite where a channel's weights give it light to
+    // which it is blind.
     [[nodiscard]] std::array<RuleQuality, kChannels> judge(
         std::span<const WeightedWavelength> rule, std::span<const FrameLight> frames) const;
 
-    // For those who try many frames: what a frame's light is to the members of the fit, relative to
-    // their signals, and how well a fit to such columns can do, in few steps. The cost is the
-    // error; amplification beyond kFreeAmplification counts as what it makes of frame_error. A
-    // cost that is known to be over give_up is returned as infinite. `hint` carries what one
-    // trial learns to the next.
+    // For trying many frames: a frame's light relative to the signals of the fit's members, and how
+    // well a fit to such columns can do, in few steps. The cost is the error; amplification beyond
+    // kFreeAmplification counts with its effect on frame_error. A cost known to exceed give_up is
+    // returned as infinite. `hint` carries information from one trial to the next.
     struct Column {
         std::array<Eigen::MatrixXd, kChannels> light;  // of one frame, or of a column each
     };
@@ -105,19 +105,19 @@ class QuadratureFitter {
                                     double give_up,
                                     Hint& hint) const;
 
-    // What no fit to these columns and one of the candidates can cost less than.
+    // A lower bound of the cost of any fit to these columns plus one of the candidates.
     [[nodiscard]] Eigen::ArrayXd least_costs(std::span<const Column* const> columns,
                                              const Column& candidates,
                                              const Hint& hint) const;
 
-    // Some `count` wavelengths where the light is that matters: nodes of the reference grid,
-    // spread so that equal shares lie between them of the root of what each adds to the signal of
-    // the member that has most of it. The root spreads them: nearly all the light of a long path
-    // may be in a few nm. A line too narrow for that, of a lamp or of what a channel sees of it,
-    // has three more.
+    // Some `count` wavelengths where the relevant light is: nodes of the reference grid, spaced so
+    // that equal shares lie between them of the root of each node's contribution to the signal of
+    // the member to which it contributes most. The root spreads them: nearly all the light of a
+    // long path may be in a few nm. A line too narrow for that, of a lamp or of a channel's
+    // response to it, gets three more.
     [[nodiscard]] std::vector<double> places_of_light(int count) const;
 
-    // The error against path length, of source and channel: for plots.
+    // The error over path length, by source and channel: for plots.
     struct PathError {
         double path_m;
         std::array<double, kChannels> error{};
@@ -126,15 +126,15 @@ class QuadratureFitter {
                                                           std::span<const FrameLight> frames,
                                                           std::size_t source) const;
 
-    // What the shapes of pixels' own tilts add to the error; 0 without a port.
+    // The error added by the shapes of pixels' own tilts; 0 without a port.
     [[nodiscard]] double tilt_shape_error() const;
 
     [[nodiscard]] const LightFamily& family() const { return family_; }
 
   private:
-    // Members of the family, and what they signal: for every source, tilt and path, in this
-    // order. All are scaled by exp(K_0 l), K_0 the least loss in the range, so that no path is
-    // too long for a double: only ratios of a member to itself are ever used.
+    // Members of the family and their signals: for every source, tilt and path, in this order. All
+    // are scaled by exp(K_0 l), K_0 the least loss in the range, so that no path is too long for a
+    // double: only ratios of a member to itself are used.
     struct Sample {
         Eigen::ArrayXd path_m;
         std::vector<double> tilts;
@@ -143,17 +143,17 @@ class QuadratureFitter {
             response{};          // the same, relative to all of a member's light; 0: it has none
         Eigen::ArrayXd light{};  // all of a member's, int f dlambda
     };
-    // What one channel knows of frames: their light to the members that it sees, relative to what
-    // it sees of them, and which of the frames it may use.
+    // The frames as one channel sees them: their light relative to the channel's response to each
+    // member, and which frames it may use.
     struct View {
         Eigen::MatrixXd relative{};
         double whole_response = 0.0;  // int Q_c dlambda
-        // By frame: its light over the range, relative to all of a member's that the channel is
-        // blind to, the largest.
+        // By frame: its light over the range, relative to all light of a member to which the
+        // channel is blind; the largest.
         Eigen::ArrayXd unseen;
         std::vector<bool> is_usable{};
 
-        // What may not be used is as good as dark.
+        // Frames that may not be used count as dark.
         [[nodiscard]] Eigen::MatrixXd usable() const;
     };
 
@@ -178,9 +178,9 @@ class QuadratureFitter {
 };
 
 inline constexpr int kCheckPaths = 161;
-// Light of a source under kDarkness of the brightest source's on the same path counts for nothing,
-// a channel's response to a member under kBlind of its best counts as none, and weights that come
-// to less than kLeak of its best over all of the range as none to that member.
+// A source's light under kDarkness of the brightest source's on the same path is ignored, a
+// channel's response to a member under kBlind of its best counts as none, and weights that sum to
+// less than kLeak of its best over all of the range count as none for that member.
 inline constexpr double kDarkness = 1e-200;
 inline constexpr double kBlind = 1e-50;
 inline constexpr double kLeak = 1e-40;

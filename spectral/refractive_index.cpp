@@ -36,7 +36,7 @@ std::array<double, kQuanFryTerms> read_quan_fry() {
     return n;
 }
 
-// The number that text begins with; text is left at what follows.
+// Reads the number at the front of text and advances text past it.
 double take_number(std::string_view& text) {
     return read_leading_number<double>(text).value_or(std::nan(""));
 }
@@ -85,7 +85,7 @@ Glass builtin_glass(std::string_view name) {
     const std::vector<std::string> names = builtin_names("glass");
     if (std::find(names.begin(), names.end(), name) == names.end()) {
         throw InputError(
-            "no built-in glass is called '{}'; allowed: {}", name, fmt::join(names, ", "));
+            "no built-in glass is named '{}'; allowed: {}", name, fmt::join(names, ", "));
     }
     return Glass(builtin_table(name));
 }

@@ -56,7 +56,7 @@ class Glass {
 // bk7, fused-silica, sapphire, pmma, polycarbonate.
 [[nodiscard]] Glass builtin_glass(std::string_view name);
 
-// The wavelengths that a built-in table covers, from its "# range: A to B nm".
+// The range of a built-in table, from its "# range: A to B nm".
 [[nodiscard]] WavelengthRange stated_range(const Table& table);
 
 }  // namespace aphotic

@@ -55,7 +55,7 @@ double activity_slope(double S, double T) {
 
 double seawater_scattering_per_m(double lambda_nm, double salinity_psu, double temperature_c) {
     using std::numbers::pi;
-    constexpr double kBoltzmann = 1.3806503e-23;   // [J/K], as the authors took it
+    constexpr double kBoltzmann = 1.3806503e-23;   // [J/K], the authors' value
     constexpr double kAvogadro = 6.0221417930e23;  // [1/mol]
     constexpr double kWater_kg_per_mol = 0.018;
     constexpr double kZero_k = 273.15;

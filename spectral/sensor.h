@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the camera makes of spectral radiance.
+// The camera's response to spectral radiance.
 //
 //   S_c = integral of L(lambda) Q_c(lambda) d lambda
 //
@@ -41,14 +41,14 @@ class Sensor {
     [[nodiscard]] static Sensor filtered(std::vector<Spectrum> filters,
                                          Spectrum quantum_efficiency);
 
-    // Without filters: red, green and blue are one.
+    // Without filters: red, green and blue are equal.
     [[nodiscard]] static Sensor mono(const Spectrum& quantum_efficiency);
     [[nodiscard]] bool is_mono() const { return is_mono_; }
 
     // Q_c. Throws InputError outside range().
     [[nodiscard]] double response(int channel, double lambda_nm) const;
 
-    // All tables behind the responses, as long as the sensor lives: for cover checks and knots.
+    // All tables behind the responses, valid during the sensor's life: for range checks and knots.
     [[nodiscard]] std::vector<const Spectrum*> curves() const;
 
     // The wavelengths that all of them cover.
@@ -61,7 +61,7 @@ class Sensor {
     bool is_mono_ = false;
 };
 
-// A built-in camera; its table says which kind it is.
+// A built-in camera; its table states its kind.
 [[nodiscard]] Sensor builtin_sensor(std::string_view name);
 
 }  // namespace aphotic

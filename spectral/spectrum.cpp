@@ -19,7 +19,7 @@ bool all_finite(const std::vector<double>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
-// The parts of range that covered leaves out: "380 to 400 nm and 720 to 780 nm".
+// The parts of range outside covered: "380 to 400 nm and 720 to 780 nm".
 std::string gap_text(WavelengthRange covered, WavelengthRange range) {
     if (covered.last_nm < range.first_nm || covered.first_nm > range.last_nm) return "all";
     std::string text;
@@ -33,15 +33,15 @@ std::string gap_text(WavelengthRange covered, WavelengthRange range) {
     return text;
 }
 
-// What to write in the rig instead: the covered part of range, else all that is covered.
+// A suggestion for the rig: the covered part of range, or else the whole covered range.
 std::string remedy_text(WavelengthRange common, WavelengthRange range) {
     if (!(common.first_nm < common.last_nm)) {
-        return "no range_nm would do, for these curves have no wavelengths in common";
+        return "no range_nm works, since these curves have no wavelengths in common";
     }
     WavelengthRange both{std::max(common.first_nm, range.first_nm),
                          std::min(common.last_nm, range.last_nm)};
     if (!(both.first_nm < both.last_nm)) both = common;
-    return fmt::format("range_nm = [{}, {}] would do", both.first_nm, both.last_nm);
+    return fmt::format("range_nm = [{}, {}] works", both.first_nm, both.last_nm);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ Spectrum::Spectrum(std::string name,
         throw InputError("{}: found {} knots; a curve needs 2 or more", name_, lambda_nm_.size());
     }
     if (!all_finite(lambda_nm_) || !all_finite(values_)) {
-        throw InputError("{}: holds a number that is not finite", name_);
+        throw InputError("{}: found a number that is not finite", name_);
     }
     const auto fall =
         std::adjacent_find(lambda_nm_.begin(), lambda_nm_.end(), std::greater_equal<>());
@@ -102,7 +102,7 @@ double product_at(std::span<const Spectrum> curves, double lambda_nm) {
 }
 
 WavelengthRange common_range(std::span<const Spectrum* const> curves) {
-    // No curve at all bounds nothing.
+    // Without curves nothing is bounded.
     WavelengthRange common{-std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::infinity()};
     for (const Spectrum* curve : curves) {

@@ -28,9 +28,9 @@ struct WavelengthRange {
     }
 };
 
-// The table that a curve was taken from.
+// The table that a curve came from.
 struct CurveSource {
-    std::string table;          // a built-in one's name, or the path of a file
+    std::string table;          // a built-in table's name, or a file's path
     std::string file_sha256{};  // empty: built in
 
     [[nodiscard]] bool is_file() const { return !file_sha256.empty(); }
@@ -38,9 +38,9 @@ struct CurveSource {
 
 class Spectrum {
   public:
-    // name says in messages whose curve this is, such as "water absorption 'pope-fry-1997'".
-    // source: none for a curve that the program made.
-    // Throws InputError unless there are at least two knots, all finite and increasing.
+    // name identifies the curve in messages, such as "water absorption 'pope-fry-1997'". source:
+    // empty for a curve that the program made. Throws InputError unless there are at least two
+    // knots, all finite and increasing.
     Spectrum(std::string name,
              std::vector<double> lambda_nm,
              std::vector<double> values,
@@ -50,8 +50,8 @@ class Spectrum {
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const std::optional<CurveSource>& source() const { return source_; }
-    // What a user calls it: the built-in table's name, or the file's without its folder; of a curve
-    // that the program made, its name.
+    // The user's name for it: the built-in table's name, or the file's without its folder; for a
+    // curve that the program made, its name.
     [[nodiscard]] std::string short_name() const;
     [[nodiscard]] WavelengthRange range() const;
     [[nodiscard]] std::span<const double> lambda_nm() const { return lambda_nm_; }
@@ -64,21 +64,21 @@ class Spectrum {
     std::optional<CurveSource> source_;
 };
 
-// The same knots and values, under whatever names.
+// The same knots and values, ignoring names.
 [[nodiscard]] bool is_same_curve(const Spectrum& a, const Spectrum& b);
 
 // Their product.
 [[nodiscard]] double product_at(std::span<const Spectrum> curves, double lambda_nm);
 
-// The range that all curves cover; first_nm > last_nm when there is none.
+// The range that all curves cover; first_nm > last_nm if there is none.
 [[nodiscard]] WavelengthRange common_range(std::span<const Spectrum* const> curves);
 
-// Throws InputError unless every curve covers range. The message names each curve that does
-// not, the part that it lacks, and the range_nm that would do.
+// Throws InputError unless every curve covers range. The message names each curve that does not,
+// the missing part, and a range_nm that works.
 void require_cover(std::span<const Spectrum* const> curves, WavelengthRange range);
 
-// The wavelengths at which any of the curves bends, with the ends of range, sorted, without
-// repeats: between neighbours every curve is a straight line.
+// The wavelengths at which any of the curves bends, plus the ends of range, sorted, without
+// duplicates: between neighbours every curve is a straight line.
 [[nodiscard]] std::vector<double> union_of_knots(std::span<const Spectrum* const> curves,
                                                  WavelengthRange range);
 

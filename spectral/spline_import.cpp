@@ -28,8 +28,8 @@ constexpr std::string_view kArraySize = "36";
 constexpr double kArrayFirst_nm = 380.0;  // as SpectralRender has it
 constexpr double kArrayStep_nm = 10.0;
 constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
-constexpr std::size_t kMostShown = 80;  // of a text, in a message
-constexpr int kMaxDepth = 100;          // of brackets in brackets
+constexpr std::size_t kMostShown = 80;  // of a string, in a message
+constexpr int kMaxDepth = 100;          // of nested brackets
 
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kOfWords =
@@ -59,7 +59,7 @@ std::size_t text_end(std::string_view text, std::size_t at) {
     return at < text.size() ? at + 1 : std::string_view::npos;
 }
 
-// Blanks for comments, which nest, and for texts after the quote that they begin with.
+// Replaces comments, which nest, and the contents of strings by blanks.
 std::string without_comments(const std::string& file, std::string_view whole) {
     std::string text(without_byte_order_mark(whole));
     for (std::size_t at = 0; at < text.size();) {
@@ -75,7 +75,7 @@ std::string without_comments(const std::string& file, std::string_view whole) {
         if (end == std::string::npos) {
             fail_at_line(file,
                          static_cast<std::size_t>(1 + std::ranges::count(text.substr(0, at), '\n')),
-                         "the {} that begins here never ends",
+                         "the {} that begins here is not terminated",
                          is_text ? "text" : "comment");
         }
         for (at += is_text ? 1 : 0; at < end; ++at) {
@@ -117,7 +117,7 @@ class Parser {
         std::string_view behind = rest_;
         const std::size_t digit = rest_[0] == '.' ? 1 : 0;
         if (digit < rest_.size() && kDigits.find(rest_[digit]) != std::string_view::npos) {
-            // One out of range is not a number: it may stand where nobody asks for it.
+            // A value out of range is not an error here: it may be in a place that nobody reads.
             token_.kind = Token::Kind::Number;
             token_.number = read_leading_number<double>(behind).value_or(
                 std::numeric_limits<double>::quiet_NaN());
@@ -154,7 +154,7 @@ class Parser {
 
     [[noreturn]] void fail_for_want_of_spectra() const {
         const std::string fitting =
-            only_ == "*" ? "" : fmt::format(", with a NAME that fits '{}'", only_);
+            only_ == "*" ? "" : fmt::format(", with a NAME that matches '{}'", only_);
         throw InputError(
             "{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or #declare NAME = "
             "array[36] {{ ... }}{}",
@@ -232,18 +232,18 @@ class Parser {
             std::ranges::adjacent_find(knots, std::ranges::equal_to(), &SplineKnot::lambda_nm);
         if (twice == knots.end()) return;
         fail(std::next(twice)->line,
-             "found the wavelength {} again, first in line {}; allowed: once",
+             "found a duplicate wavelength {}, first on line {}; allowed: once",
              twice->lambda_nm,
              twice->line);
     }
 
-    // Two spectra may not go to one file, on disks that know no case either.
+    // Two spectra may not go to one file, even on file systems that ignore case.
     void add(SplineSpectrum spectrum) {
         const std::string table = spline_table_name(spectrum.identifier);
         for (const SplineSpectrum& other : found_.spectra) {
             if (spline_table_name(other.identifier) != table) continue;
             fail(spectrum.line,
-                 "found a second spectrum for {}, the first is {} in line {}; allowed: one",
+                 "found a second spectrum for {}, the first is {} on line {}; allowed: one",
                  table,
                  other.identifier,
                  other.line);
@@ -342,12 +342,10 @@ void check_values(const std::string& file, const SplineSpectrum& spectrum, Curve
 
 std::string obtained_text(const SplineSpectrum& spectrum) {
     if (spectrum.form == "array[36]") {
-        return "the values of an array[36], taken to stand at 380 to 730 nm by 10 nm, as in "
-               "SpectralRender";
+        return "the values of an array[36], taken at 380 to 730 nm by 10 nm, as in SpectralRender";
     }
     std::string text = fmt::format("the knots of a {}", spectrum.form);
-    if (!spectrum.is_linear())
-        text += ", here joined by straight lines, which POV-Ray's curve is not";
+    if (!spectrum.is_linear()) text += ", joined here by straight lines, unlike POV-Ray's curve";
     return text;
 }
 

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Spectra as users of POV-Ray share them, in its scene language: splines over wavelength, as for
-// Lightsys, and the arrays of SpectralRender, whose 36 values stand at 380, 390, ... 730 nm.
+// Spectra as POV-Ray users share them, in its scene language: splines over wavelength, as for
+// Lightsys, and the arrays of SpectralRender, whose 36 values are at 380, 390, ... 730 nm.
 //
 //   #declare RS_Clay = spline { linear_spline  380, 0.021  400, <0.03, 0.03, 0.03>  730, 8.4/100 }
 //   #declare D_Clay  = array[36] { 0.021, 0.024, ... }
 //
-// Read as POV-Ray 3.7 reads them: comments nest, most commas may be missing, a number may be a
-// sum, difference, product or quotient of numbers (so "400 -0.5" is 399.5), knots are sorted.
-// Where POV-Ray lets a second knot at one wavelength take the first one's place, we refuse.
-// No directive is carried out: what stands in an #if counts whatever its condition, and a spectrum
-// that a loop or a macro fills is refused.
+// Parsed as by POV-Ray 3.7: comments nest, most commas may be missing, a number may be a sum,
+// difference, product or quotient of numbers (so "400 -0.5" is 399.5), knots are sorted. POV-Ray
+// lets a second knot at one wavelength replace the first; we refuse it. No directive is executed:
+// the contents of an #if count whatever its condition, and a spectrum filled by a loop or a macro
+// is refused.
 //
-// Our tables are straight lines between knots, and so is POV-Ray's linear_spline (what it takes
-// where none is named), up to its last knots, outside which POV-Ray holds it constant and we have
-// no value. Of a cubic_spline, natural_spline or quadratic_spline the knots alone are taken.
-// POV-Ray's curves pass through them too, except that the first and last knot of a cubic_spline
-// are only its tangents.
+// Our tables are straight lines between knots, and so is POV-Ray's linear_spline (its default), up
+// to its last knots, outside which POV-Ray holds it constant and we have no value. Of a
+// cubic_spline, natural_spline or quadratic_spline only the knots are used. POV-Ray's curves pass
+// through them too, except that the first and last knot of a cubic_spline are only its tangents.
 //
 // Every error is an InputError "file:line: what was found; allowed: ...".
 #pragma once
@@ -31,7 +30,7 @@
 
 namespace aphotic {
 
-// Far enough for any camera, and too narrow for micrometres, angstroms and wave numbers.
+// Wide enough for any camera, and too narrow for micrometres, angstroms and wave numbers.
 inline constexpr WavelengthRange kSplineRange{200.0, 2500.0};
 
 struct SplineKnot {
@@ -51,16 +50,16 @@ struct SplineSpectrum {
 
 struct SplineFile {
     std::vector<SplineSpectrum> spectra;       // one or more, in the file's order
-    std::vector<std::size_t> anonymous_lines;  // of splines without a name, which are passed over
+    std::vector<std::size_t> anonymous_lines;  // of splines without a name, which are skipped
 };
 
-// only: a shell's pattern such as D_CC_*; spectra whose identifier does not fit are passed over.
-// file_name stands in messages.
+// only: a shell pattern such as D_CC_*; spectra whose identifier does not match are skipped.
+// file_name is for messages.
 [[nodiscard]] SplineFile parse_splines(const std::string& file_name,
                                        std::string_view text,
                                        const std::string& only = "*");
 
-// D_Macbeth_01 goes to d-macbeth-01.csv.
+// D_Macbeth_01 becomes d-macbeth-01.csv.
 [[nodiscard]] std::string spline_table_name(const std::string& identifier);
 
 // The spectrum as a CSV file's text. The role is Reflectance or LampSpectrum, in relative power.

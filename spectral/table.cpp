@@ -102,7 +102,7 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
                 excerpt(column));
         }
         if (!seen.insert(column).second) {
-            fail_at_line(table.name, line, "the column '{}' stands twice", excerpt(column));
+            fail_at_line(table.name, line, "duplicate column '{}'", excerpt(column));
         }
     }
 }
@@ -171,8 +171,8 @@ constexpr std::string_view kDaylightsLoss =
     "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
     "docs/reference/water.md";
 
-// The most common of mistakes, and one that no image shows: where a table says so itself, it is
-// said. Not asked of a title, which may tell what a was derived from.
+// The most common mistake, and one that no image shows, so it is reported if the table itself says
+// so. Titles are not checked, since they may name what a table was derived from.
 void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
     if (!is_of_water(rule.role)) return;
     for (const std::string& column : table.columns) {
@@ -218,7 +218,7 @@ void check_wavelengths(const Table& table) {
             fail_at_line(
                 table.name,
                 row.line,
-                "wavelength_nm: found {}; allowed: above {}, for wavelengths must increase",
+                "wavelength_nm: found {}; allowed: above {}, since wavelengths must increase",
                 lambda_nm,
                 last_nm);
         }

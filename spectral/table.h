@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables of numbers in CSV, the project's own and the user's, and the curves that they hold.
+// Tables of numbers in CSV, the project's own and the user's, and their curves.
 //
 //   # title: Coral sand, clean          comment; "key: text" becomes metadata
 //   wavelength_nm,reflectance           one header row: names that end in their unit
 //   400,0.279                           one row of numbers per line, comma-separated
 //
-// Text is UTF-8, at most 64 MiB, lines end in LF or CR LF. Blank lines, spaces around fields
-// and a byte order mark are passed over. Numbers use a decimal point whatever the locale.
-// Every error is an InputError "file:line: what was found; allowed: ...".
+// Text is UTF-8, at most 64 MiB, lines end in LF or CR LF. Blank lines, spaces around fields and a
+// byte order mark are ignored. Numbers use a decimal point whatever the locale. Every error is an
+// InputError "file:line: what was found; allowed: ...".
 //
-// The role that a curve is to play fixes the header rows and the values that are allowed:
+// The role of a curve determines the header rows and the values that are allowed:
 //
 //   WaterAbsorption      wavelength_nm,absorption_per_m        0 or more      [1/m]
 //   WaterScattering      wavelength_nm,scattering_per_m        0 or more      [1/m]
@@ -47,19 +47,19 @@ struct TableRow {
 
 struct Table {
     std::string name;         // file path, or built-in name
-    std::string file_sha256;  // empty: of no file
+    std::string file_sha256;  // empty: not from a file
     std::map<std::string, std::string> metadata;
     std::vector<std::string> columns;
     std::size_t header_line = 0;
     std::vector<TableRow> rows;
 
-    // The text of a "# key: text" comment, empty when there is none.
+    // The text of a "# key: text" comment, empty if there is none.
     [[nodiscard]] std::string text_of(const std::string& key) const;
 };
 
 inline constexpr std::size_t kMostTableBytes = std::size_t{64} << 20U;
 
-// name stands in messages.
+// name is for messages.
 [[nodiscard]] Table parse_table(const std::string& name, std::string_view text);
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
 
@@ -94,7 +94,7 @@ inline constexpr std::array kCurveRoles{CurveRole::WaterAbsorption,
 // One curve per column after the first, named such as "sensor response 'nikon-d5100' (red)".
 [[nodiscard]] std::vector<Spectrum> curves_of(const Table& table, CurveRole role);
 
-// The roles that the table could play; an InputError when it could play none.
+// The roles that the table could have; an InputError if there are none.
 [[nodiscard]] std::vector<CurveRole> roles_of(const Table& table);
 
 }  // namespace aphotic

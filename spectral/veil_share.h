@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much of what a camera sees in the middle of its image is veil: V_c / S_c of each channel,
-// 0 in water that does not scatter, 1 where nothing of the floor arrives.
+// The veil's share of the signal in the middle of the image: V_c / S_c of each channel, 0 in water
+// that does not scatter, 1 where no light from the floor arrives.
 #pragma once
 
 #include "spectral/sensor.h"
@@ -15,7 +15,7 @@ namespace aphotic {
 
 using VeilShare = std::array<double, kChannels>;
 
-// The pixel of an image's middle; of an even size the one below and to the right of it.
+// The pixel in an image's middle; for an even size, the one below and to the right of it.
 [[nodiscard]] constexpr std::size_t middle_pixel(int width_px, int height_px) {
     const auto width = static_cast<std::size_t>(width_px);
     return static_cast<std::size_t>(height_px) / 2 * width + width / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a metre of this water does to light.
+// The effect of a metre of this water on light.
 //
 //   K = multiple (a + sum of b_i (1 - F_i(psi_K))) + uniform_loss
 //
@@ -14,7 +14,7 @@
 // uniform_loss  scattering as one wavelength-free loss (the paper's assumption 1)       [1/m]
 //
 // K is neither the beam attenuation c = a + b nor the diffuse attenuation K_d of daylight. The cut
-// is chosen by the light of all orders (validation/monte_carlo.h): docs/reference/water.md has the
+// was chosen by the light of all orders (validation/monte_carlo.h): docs/reference/water.md has the
 // table.
 //
 // With multiple = 0 no table is read, so none need cover the range.
@@ -34,10 +34,10 @@ namespace aphotic {
 
 // [rad]
 inline constexpr double kLossCut = 45.0 * std::numbers::pi / 180.0;
-// What is turned by less is seen beside its lamp, and no part of the veil (light/veil.h).
+// Light turned by less appears at its lamp, and is not part of the veil (light/veil.h).
 inline constexpr double kVeilCut = 10.0 * std::numbers::pi / 180.0;
 
-// One kind of what scatters: the water itself, or the particles in it.
+// One kind of scatterer: the water itself, or its particles.
 struct Scatterer {
     Spectrum scattering_per_m;  // b
     PhaseFunction phase;
@@ -47,13 +47,13 @@ struct Water {
     Spectrum absorption_per_m;
     double multiple = 1.0;
     double uniform_loss_per_m = 0.0;
-    double salinity_psu = 35.0;  // it and the temperature are for the refractive index only
+    double salinity_psu = 35.0;  // salinity and temperature are for the refractive index only
     double temperature_c = 10.0;
     std::vector<Scatterer> scatterers{};
 
     [[nodiscard]] double attenuation_per_m(double lambda_nm) const;  // K
 
-    // Of one scatterer, multiple included: b_i.
+    // For one scatterer, multiple included: b_i.
     [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
 
     // No more than K at any wavelength of the tables.
@@ -62,12 +62,12 @@ struct Water {
     [[nodiscard]] bool scatters() const { return multiple != 0.0 && !scatterers.empty(); }
     [[nodiscard]] bool is_clear() const { return multiple == 0.0 && uniform_loss_per_m == 0.0; }
 
-    // The tables that K is read from, as long as the water lives.
+    // The tables from which K is read, valid during the water's life.
     [[nodiscard]] std::vector<const Spectrum*> curves() const;
 
     // Relative to air.
     [[nodiscard]] double refractive_index(double lambda_nm) const;
-    // Waters of the same signature have the same index; by key, as words and numbers.
+    // Waters of the same signature have the same index; by key, in words and numbers.
     [[nodiscard]] std::map<std::string, std::string> index_signature() const;
 };
 

@@ -8,20 +8,20 @@
 namespace aphotic {
 namespace {
 
-// A sweep that gains less than this share was the last.
+// A sweep that gains less than this share is the last.
 constexpr double kGain = 0.02;
 constexpr int kMostSweeps = 6;
-// Wavelengths closer together than this could not be told apart by the names of their channels.
+// Closer wavelengths would have the same channel names.
 constexpr double kLeastDistanceNm = 0.01;
 // Few enough to try all sets of them.
 constexpr int kFewEnough = 3;
-// More wavelengths are sought at once when a first sweep of these is this far from the budget.
+// More wavelengths are tried at once if a first sweep is this far from the budget.
 constexpr double kHopeless = 30.0;
-// The same after all of the search, where a second one might still help.
+// The same after the whole search, where a second one might still help.
 constexpr double kFarOff = 3.0;
 constexpr int kMany = 6;
 constexpr double kMiddle = 0.5;
-// A plan of fewer wavelengths is as good when it errs less than this, far under any frame's
+// A plan of fewer wavelengths is as good if it errs by less than this, far below any frame's
 // rounding.
 constexpr double kNothing = 1e-8;
 
@@ -58,7 +58,7 @@ class Search {
         }
     }
 
-    // Each wavelength in turn moves to the best of the candidates' places.
+    // Moves each wavelength in turn to the best candidate.
     void sweep() {
         for (std::size_t j = given_.size(); j < places_.size(); ++j) {
             std::vector<const QuadratureFitter::Column*> others;
@@ -72,7 +72,7 @@ class Search {
         }
     }
 
-    // Where to start from: evenly over the light, or over the range; offset: of the first, 0 to 1.
+    // Starting wavelengths: evenly over the light, or over the range; offset: of the first, 0 to 1.
     [[nodiscard]] std::vector<double> over_the_light(int count, double offset) const {
         std::vector<double> lambda_nm;
         for (int j = 0; j < count; ++j) {
@@ -92,7 +92,7 @@ class Search {
         return lambda_nm;
     }
 
-    // The best of all sets of a few of the candidates.
+    // The best of all sets of a few candidates.
     std::vector<double> best_of_all(int count) {
         std::vector<double> chosen;
         std::vector<double> best = over_the_light(count, kMiddle);
@@ -125,7 +125,7 @@ class Search {
         });
     }
 
-    // The nearest wavelength, up or down, that no place has yet.
+    // The nearest free wavelength, up or down.
     [[nodiscard]] double free(double lambda_nm) const {
         const double width_nm = range_.last_nm - range_.first_nm;
         for (double away_nm = 0.0; away_nm <= width_nm; away_nm += kLeastDistanceNm) {
@@ -170,7 +170,7 @@ class Search {
         }
     }
 
-    // Takes the places instead of those from j on, if that is better.
+    // Replaces the places from j on, if that is better.
     void try_out(std::size_t j, std::span<const Place> instead) {
         std::vector<const Place*> tried;
         for (const Place& place : places_) tried.push_back(&place);
@@ -189,7 +189,7 @@ class Search {
         std::ranges::copy(instead, places_.begin() + static_cast<std::ptrdiff_t>(j));
     }
 
-    // Moves each, and each together with its neighbour, by the step.
+    // Moves each place, and each together with its neighbour, by the step.
     void move_by(double step_nm) {
         for (std::size_t j = given_.size(); j < places_.size(); ++j) {
             for (const double move_nm : {-step_nm, step_nm}) {
@@ -250,7 +250,7 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
                                      double frame_error,
                                      std::span<const FrameLight> given,
                                      double budget) {
-    // No more than the range has room for.
+    // No more than fit into the range.
     const double room = (range.last_nm - range.first_nm) / (2.0 * kLeastDistanceNm);
     count = std::max(1, static_cast<int>(std::min<double>(count, room)));
     Search search(fitter, range, frame_error, given);
@@ -272,7 +272,7 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
     };
     improve_from(count <= kFewEnough ? search.best_of_all(count)
                                      : search.over_the_light(count, kMiddle));
-    // Many wavelengths take long: then further starts are for those that only just miss.
+    // Many wavelengths take long, so further starts are only for those that just miss.
     const bool is_settled = least <= budget || least > kFarOff * budget;
     if (count > kMany && is_settled) return best;
     improve_from(search.over_the_range(count, kMiddle));
@@ -285,7 +285,7 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
 FittedRule plan_wavelengths(const QuadratureFitter& fitter,
                             WavelengthRange range,
                             const PlanTarget& target) {
-    // What the frames' own error leaves to the wavelengths, if the weights do not amplify it.
+    // The error that the frames leave to the wavelengths, if the weights do not amplify it.
     constexpr double kLeastShare = 0.01;
     const double budget =
         std::max(kLeastShare * target.frame_error, target.tolerance - target.frame_error);

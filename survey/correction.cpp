@@ -70,8 +70,7 @@ float brightest(const Lightmap& map, int channel) {
     return std::ranges::max(plane_of(map, channel));
 }
 
-// h of a pixel. A channel whose map is 0 there tells nothing, as between an observed mosaic's
-// sites.
+// h of a pixel. A channel whose map is 0 there is ignored, as between an observed mosaic's sites.
 float held_share(const std::array<std::span<const float>, kChannels>& lights,
                  const std::array<float, kChannels>& least,
                  std::size_t pixel) {
@@ -93,7 +92,7 @@ double least_signal(const NoiseLimit& limit, double veil) {
 }
 
 CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& correction) {
-    require_size(raw, map.width_px, map.height_px, "as the map has");
+    require_size(raw, map.width_px, map.height_px, "like the map");
     require_finite(raw.samples, raw.width_px, "the image");
     const std::size_t pixels = raw.pixels();
     CorrectedImage result{.image = std::move(raw), .doubts = std::vector<std::uint8_t>(pixels)};
@@ -160,7 +159,7 @@ PerChannel middle_quotient(const RawImage& raw,
                            const Lightmap& map,
                            const SensorLevels& levels,
                            double share) {
-    require_size(raw, map.width_px, map.height_px, "as the map has");
+    require_size(raw, map.width_px, map.height_px, "like the map");
     require_finite(raw.samples, raw.width_px, "the image");
     std::array<std::vector<float>, kChannels> quotients;
     std::array<float, kChannels> least{};

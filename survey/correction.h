@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A raw image less the veil of its own light, divided by the map of it.
+// A raw image less the veil of its light, divided by its map.
 //
 //   corrected_c = g_c (raw - black - v_c) h / max(map_c, h least_c),
 //   v_c = E_c veil_c,    E_c = middle_c / g_c,    h = min_k min(1, map_k / least_k)
@@ -13,16 +13,16 @@
 //        noise is not blown up there, the pixel keeps its colour, and is marked as doubtful
 //
 // Where the map is bright enough, h = 1 and the pixel is divided by its light. No sample exceeds
-// g_c (raw - black) / least_c. In h only those channels count whose map is over 0: a map of 0 tells
-// nothing, as between the sites of an observed mosaic.
+// g_c (raw - black) / least_c. Only channels whose map is above 0 count in h: a map of 0 carries no
+// information, as between the sites of an observed mosaic.
 //
-// Of a floor like the rig's, raw - black = E_c (map_c + veil_c), so that corrected_c = g_c E_c at
-// every pixel. Where a thing reflects twice the light of the rig's floor in a channel, twice that.
-// The gain of a survey makes its middle come out as asked:
-// g_c = middle_c / (the median of (raw - black) / (map_c + veil_c)).
+// For a floor like the rig's, raw - black = E_c (map_c + veil_c), so that corrected_c = g_c E_c at
+// every pixel; twice that for a surface that reflects twice as much in a channel. The gain of a
+// survey gives its median the requested value: g_c = middle_c / (the median of (raw - black) /
+// (map_c + veil_c)).
 //
-// So the veil is told from the floor by the rig's floor: where the survey's middle reflects r times
-// as much, E is off by k = r + (1 - r) q_0, q_0 the veil's share of the signal there, and the
+// The veil is thus separated from the floor by the rig's floor: if the survey's median reflects r
+// times as much, E is off by k = r + (1 - r) q_0, q_0 the veil's share of the signal there, and the
 // corrected floor, where that share is q, by (1 - r) (q - q_0) / (k (1 - q)) of itself.
 //
 // Noise. A sample of s = raw - black - v has the standard deviation sqrt(r^2 + (s + v) / e): read
@@ -70,10 +70,10 @@ struct NoiseLimit {
     double share = 0.01;              // of the map's brightest, in each channel
     double relative = 0.5;            // L
     double read_noise = 0.0;          // r, in the camera's numbers
-    double electrons_per_number = 0;  // e; 0: shot noise is left aside
+    double electrons_per_number = 0;  // e; 0: shot noise is ignored
 };
 
-// The least s that is within the limit, beside a veil; both in the camera's numbers.
+// The least s within the limit, next to a veil; both in the camera's numbers.
 [[nodiscard]] double least_signal(const NoiseLimit& limit, double veil = 0.0);
 
 struct Correction {
@@ -88,18 +88,18 @@ struct CorrectedImage {
     std::vector<std::uint8_t> doubts;  // by pixel
 };
 
-// Throws InputError when raw and map are not of one size, when a sample is not finite, or when it
-// does not stay so under the gain.
+// Throws InputError if raw and map differ in size, or if a sample is not finite, or would not be
+// under the gain.
 [[nodiscard]] CorrectedImage corrected(RawImage raw,
                                        const Lightmap& map,
                                        const Correction& correction);
 
-// The same with R, G and B at every pixel, and a pixel as doubtful as those that it is made of.
+// The same with R, G and B at every pixel, each as doubtful as the pixels it is made of.
 [[nodiscard]] CorrectedImage demosaiced(const CorrectedImage& corrected);
 
 // The median of (raw - black) / map_c over the pixels that are neither saturated nor black, nor
-// under the share of the map's brightest. NaN where a channel has none. Of a mono camera, whose map
-// has R, G and B alike, all three are one.
+// below the share of the map's brightest. NaN if a channel has none. For a mono camera, whose map
+// has equal R, G and B, all three are one.
 [[nodiscard]] PerChannel middle_quotient(const RawImage& raw,
                                          const Lightmap& map,
                                          const SensorLevels& levels,

@@ -44,7 +44,7 @@ std::optional<Suspicion> doubt_of_rig(std::span<const LightCells> images,
         return Suspicion{
             .about = "strobes",
             .what = fmt::format(
-                "{} of {} images look as if {} had not fired: another rig? None is judged",
+                "{} of {} images look as if {} had not fired: a different rig? No image is judged",
                 count,
                 images.size(),
                 fmt::join(marked("", survey.strobes.names, 1.0, out).strobes, ", "))};
@@ -53,7 +53,7 @@ std::optional<Suspicion> doubt_of_rig(std::span<const LightCells> images,
 }
 
 std::string why_dark(const Dropout& found) {
-    return fmt::format("without light: {:.2g} of the survey's, as where no strobe fires",
+    return fmt::format("without light: {:.2g} of the survey's, as when no strobe fires",
                        found.share);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the strobes fired (dropouts.h), of the images of a survey: in the light of its rig where
-// that is known, strobe by strobe, else of its one map, else by their level alone.
+// Whether the strobes fired (dropouts.h) in a survey's images: by the light of each strobe if the
+// rig is known, otherwise by the one map, otherwise by their level.
 #pragma once
 
 #include "survey/dropouts.h"
@@ -19,22 +19,22 @@ namespace aphotic {
                                      const Survey& survey,
                                      const ImageFile& file);
 
-// Where most images seem to lack strobes, it is the rig that is another, and none is judged: the
-// scales are of no image then, and this is what to say.
+// If most images seem to lack strobes, the rig is wrong and no image is judged: the scales are then
+// empty, and this is the message.
 [[nodiscard]] std::optional<Suspicion> doubt_of_rig(std::span<const LightCells> images,
                                                     const Survey& survey,
                                                     DropoutScales& scales);
 
-// Notes in the image what it has of the survey's light, and divides its exposure by that where the
-// light that was on is wanted; where images have an exposure each, its level by which. An
-// InputError of an image without light.
+// Records in the image its share of the survey's light, and divides its exposure by that if
+// correction is requested; if each image has its own exposure, its level likewise. An InputError
+// for an image without light.
 void judge(SurveyImage& taken,
            const Survey& survey,
            const ImageFile& file,
            const DropoutScales& scales);
 [[nodiscard]] std::string why_dark(const Dropout& found);
 
-// Of a strobe that did not fire, or of all at less than their power.
+// For a strobe that did not fire, or all at less than their power.
 [[nodiscard]] MarkedImage marked(const std::string& image,
                                  const std::vector<std::string>& strobes,
                                  double share,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which strobes lit an image, by its signal in a coarse grid of cells and the light of each strobe
-// alone in these. Light adds up, so of strobes A that fired, on a floor of texture x,
+// Which strobes lit an image, from its signal in a coarse grid of cells and each strobe's own light
+// there. Light adds up, so for strobes A that fired, on a floor of texture x,
 //
 //   m_k = e S_Ak (1 + x_k),    S_A = sum of the S_s of A,    level = ln(e / E)
 //   z_k(A) = ln(m_k / e + s) - ln(S_Ak + s)
@@ -10,7 +10,7 @@
 // e    the image's exposure times its floor's brightness: the median of m_k / S_Ak
 // E    the survey's: the median of e over its images    s    kStray of the brightest light
 //
-// Green alone, for strobes and floors differ little in colour, and water leaves it everywhere. Each
+// Green only, since strobes and floors differ little in it, and water transmits it everywhere. Each
 // set A is judged by
 //
 //   l(A) = - sum over Haar's details d of z   1.5 ln(1 + d^2 / (2 sigma_j^2)) / kDispersion

@@ -24,7 +24,7 @@
 namespace aphotic {
 namespace {
 
-// Named by the pattern of the whole file, as --bayer names it.
+// By the pattern of the whole file, as for --bayer.
 std::array<double, 4> sites_of_file(const SurveyImage& taken) {
     const std::array<double, 4> medians = site_medians(taken.raw, taken.levels.black);
     std::array<double, 4> of_file{};
@@ -36,15 +36,15 @@ std::array<double, 4> sites_of_file(const SurveyImage& taken) {
     return of_file;
 }
 
-// What images look like: the veil is part of it.
+// The images' appearance, veil included.
 Lightmap as_signal(Lightmap map) {
     map.samples = signal_of(map);
     map.veil.clear();
     return map;
 }
 
-// Whether the file says that its numbers are to be looked at: a camera's JPEG, or any image whose
-// Exif or profile names sRGB. What tells nothing is linear, as raw images are.
+// Whether the file says that its numbers are for viewing: a camera's JPEG, or any image whose Exif
+// or profile names sRGB. Without such information it is linear, as raw images are.
 bool says_srgb(const std::filesystem::path& file) {
     if (is_raw_name(file)) return false;
     const std::string extension = lower_case(file.extension().string());
@@ -62,8 +62,8 @@ bool says_srgb(const std::filesystem::path& file) {
     }
 }
 
-// In a unit that is the same for files that tell of the same numbers; none where there is none.
-std::optional<double> exposure_told(const ShotExposure& shot) {
+// In a unit that is the same for files with the same Exif numbers; empty if there are none.
+std::optional<double> stated_exposure(const ShotExposure& shot) {
     if (!shot.time_s && !shot.iso && !shot.f_number) return std::nullopt;
     const double stop = shot.f_number.value_or(1.0);
     return shot.time_s.value_or(1.0) * shot.iso.value_or(1.0) / (stop * stop);
@@ -99,7 +99,7 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     look.map_mean = means_of(map);
     look.frame = frame_look(taken.raw, taken.levels, map);
     look.says_srgb = says_srgb(file.source);
-    if (taken.tags) look.told = exposure_told(exposure_of(*taken.tags));
+    if (taken.tags) look.stated_exposure = stated_exposure(exposure_of(*taken.tags));
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(*sled) : std::nullopt) {
         look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));
@@ -107,8 +107,8 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     return look;
 }
 
-// Learns how the images differ, and leaves out those that lack light; of those with an exposure
-// each, brings what is left to one.
+// Learns how the images differ, and omits those that lack light; if each has its own exposure,
+// brings the rest to one.
 void judge_looks(const Survey& survey, SurveyLook& look) {
     const bool has_levels = survey.camera.exposure_by == ExposureBy::Model;
     if (survey.dropouts == Dropouts::Ignore && !has_levels) return;
@@ -163,10 +163,10 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
             looks[i] = look_at_image(survey.files[choices[i].file], survey, request.least_light);
             looks[i]->is_for_gain = choices[i].is_for_gain;
         } catch (const InputError& error) {
-            whys[i] = error.what();  // it is said of the image when its turn comes, if one does
+            whys[i] = error.what();  // the image is reported when its turn comes, if it does
         }
         const std::scoped_lock lock(mutex);
-        watch.progress("looking at the survey",
+        watch.progress("examining the survey",
                        static_cast<double>(++count) / static_cast<double>(choices.size()));
     });
     SurveyLook result{.count = choices.size()};
@@ -183,10 +183,9 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
 }
 
 std::string SurveyLook::none_can_be(std::string_view done) const {
-    return count == 1
-               ? fmt::format("the only image looked at cannot be {}; {}", done, first_why)
-               : fmt::format(
-                     "none of the {} images looked at can be {}; {}", count, done, first_why);
+    return count == 1 ? fmt::format("the only image examined cannot be {}; {}", done, first_why)
+                      : fmt::format(
+                            "none of the {} images examined can be {}; {}", count, done, first_why);
 }
 
 std::vector<Suspicion> suspicions_of(const std::optional<Navigation>& navigation) {

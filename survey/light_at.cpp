@@ -34,15 +34,15 @@ MapAsRadians map_as_radians(const Rig& rig,
         return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
     };
     if (!navigation) return {};
-    const auto in_radians = [told = navigation->told()](Sled sled) {
-        if (told.pitch) sled.pitch_rad /= kRadiansPerDegree;
-        if (told.roll) sled.roll_rad /= kRadiansPerDegree;
+    const auto in_radians = [given = navigation->given()](Sled sled) {
+        if (given.pitch) sled.pitch_rad /= kRadiansPerDegree;
+        if (given.roll) sled.roll_rad /= kRadiansPerDegree;
         return sled;
     };
     bool is_level = true;
     for (Sled& sled : sleds) {
-        if (navigation->told().pitch && !is_small(sled.pitch_rad)) return {};
-        if (navigation->told().roll && !is_small(sled.roll_rad)) return {};
+        if (navigation->given().pitch && !is_small(sled.pitch_rad)) return {};
+        if (navigation->given().roll && !is_small(sled.roll_rad)) return {};
         const Sled other = in_radians(sled);
         if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
         sled = other;
@@ -81,7 +81,7 @@ void require_map_for(PlaneSize images, const ExrReader& map, const std::filesyst
     constexpr std::int64_t kFew = std::int64_t{1} << 24U;  // more pixels than images have
     const std::int64_t pixels = std::int64_t{map.width_px()} * map.height_px();
     if (pixels <= std::int64_t{images.width_px} * images.height_px + kFew) return;
-    throw InputError("{}: found {} x {} pixels; allowed: {} x {}, as the images have",
+    throw InputError("{}: found {} x {} pixels; allowed: {} x {}, like the images",
                      file.string(),
                      map.width_px(),
                      map.height_px(),
@@ -177,11 +177,11 @@ LightAt light_of_rig(const Rig& rig,
 }
 
 void require_light_for(const RawImage& raw, const LightAt& light) {
-    require_size(raw, light.size.width_px, light.size.height_px, "as the map has");
+    require_size(raw, light.size.width_px, light.size.height_px, "like the map");
     if (raw.mosaic != Mosaic::Mono || light.is_grey) return;
     throw InputError(
-        "found the image of a mono camera, and a map whose R, G and B differ; allowed: the map of "
-        "a mono camera");
+        "found a mono camera's image, and a map whose R, G and B differ; allowed: a mono camera's "
+        "map");
 }
 
 LightAt light_of_map(const std::filesystem::path& map_file,

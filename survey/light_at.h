@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light that an image of a survey was taken in: by a rig at the image's own altitude and
+// The light in which an image of a survey was taken: from a rig at the image's own altitude and
 // attitude, or one map for all.
 #pragma once
 
@@ -26,13 +26,13 @@ namespace aphotic {
 struct LightAt {
     std::string title{};  // of the rig, and its file; empty: no rig
     std::string toml{};
-    std::string digest;           // of all that the maps depend on, the pose aside
-    std::string camera_digest{};  // of its response alone; empty: the camera is not known
+    std::string digest;           // of everything that the maps depend on except the pose
+    std::string camera_digest{};  // of its response only; empty: the camera is unknown
     std::optional<double> rig_altitude_m{};  // its own
     PlaneSize size;
-    std::optional<PlaneSize> rig_size{};  // where the rig has another than its images, scaled
-    bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera
-    // Whether the maps have the veil; none: the water does not scatter, as far as is known.
+    std::optional<PlaneSize> rig_size{};  // if the rig's size was scaled to its images'
+    bool is_grey = false;                 // the maps have equal R, G and B: a mono camera
+    // Whether the maps have the veil; empty: the water does not scatter, as far as is known.
     std::optional<bool> has_veil{};
     std::optional<double> veil_tolerance{};  // where they have one of the rig's
     // These are called from several threads.
@@ -40,21 +40,21 @@ struct LightAt {
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
     // The same on a relief, of a rig.
     std::shared_ptr<const ReliefMapMaker> relief{};
-    // The map of tilts that the navigation tells in radians instead of degrees; none where that
-    // puts a strobe under the floor. Empty where they are surely degrees.
+    // The map with the navigation's tilts taken as radians instead of degrees; empty if that puts a
+    // strobe below the floor, or if they are surely degrees.
     std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
-    // To show what is divided by the maps; empty: the camera is not known.
+    // To show the images divided by the maps; empty: the camera is unknown.
     std::function<CameraToSrgb()> to_srgb{};
-    std::optional<PerChannel> floor_colour{};           // none: nothing is known of the floor
+    std::optional<PerChannel> floor_colour{};           // empty: nothing is known of the floor
     std::optional<PerChannel> floor_colour_in_water{};  // by the light that images were taken in
 };
 
-// What a correction's veil is off by at most, of the signal: under what images' noise and the model
-// are.
+// The largest error of a correction's veil, relative to the signal: below the images' noise and the
+// model's error.
 inline constexpr double kVeilOfCorrection = 1e-3;
 
-// The poses of these images: those that have none are passed over here, as without a navigation all
-// have; and the paths that they see, which maps are to serve.
+// The poses of these images, skipping those without, since without navigation all have one; and the
+// paths that they see, which maps must cover.
 [[nodiscard]] std::vector<Sled> sleds_of(const std::optional<Navigation>& navigation,
                                          const std::vector<ImageFile>& files);
 [[nodiscard]] PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds);
@@ -67,12 +67,12 @@ inline constexpr double kVeilOfCorrection = 1e-3;
                                    double veil_tolerance = kVeilOfCorrection,
                                    bool has_relief = false);
 
-// An InputError unless its maps are for such an image: of its size, and grey for a mono camera.
+// An InputError unless its maps suit such an image: of its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);
 
-// One map, whatever the pose: channels R, G and B of an EXR, and where it has them veil.R, veil.G
-// and veil.B. What is not finite in it, as where nothing was observed, is dark. An
-// InputError when it is far larger than the images that it is for, where their size is told.
+// One map, whatever the pose: channels R, G and B of an EXR, and veil.R, veil.G and veil.B if it
+// has them. Samples that are not finite, as where nothing was observed, are dark. An InputError if
+// it is far larger than the images that it is for, if their size is known.
 [[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file,
                                    bool has_veil = true,
                                    std::optional<PlaneSize> images = std::nullopt);

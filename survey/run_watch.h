@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is said while a survey is worked on, to whom it concerns: a terminal, a window, nobody.
-// Calls never overlap.
+// Reports from work on a survey, for whoever shows them: a terminal, a window, nobody. Calls never
+// overlap.
 #pragma once
 
 #include "survey/survey_check.h"
@@ -24,12 +24,12 @@ struct Skipped {
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Skipped>& skipped);
 
 struct RunWatch {
-    // share: of this part of the work, 0 to 1; it falls where another part begins.
+    // share: of this part of the work, 0 to 1; it falls when another part begins.
     std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
     std::function<void(const Skipped& one)> skipped = [](const auto&) {};
-    // Less than all strobes lit it.
+    // A dropout.
     std::function<void(const MarkedImage& one)> marked = [](const auto&) {};
-    // Before anything is written, also when nothing looks wrong. What it throws ends the run.
+    // Before anything is written, even if nothing looks wrong. An exception from here ends the run.
     std::function<void(const std::vector<Suspicion>& found)> looks_wrong = [](const auto&) {};
 };
 

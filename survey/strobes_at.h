@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of each strobe of a rig alone, where an image was taken: in cells (survey/dropouts.h),
-// by lightmaps of few pixels, to tell which strobes fired; and of those that did, at every pixel.
-// Strobes' light adds up, so a strobe's is the lightmap of a rig that has no other.
+// The light of each strobe of a rig, where an image was taken: in cells (survey/dropouts.h), from
+// small lightmaps, to detect which strobes fired; and for those that did, at every pixel. Strobes'
+// light adds up, so a strobe's is the lightmap of a rig that has no other.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -24,17 +24,16 @@ struct StrobesAt {
     std::vector<std::string> names{};
     // These are called from several threads.
     std::function<std::vector<CellPlane>(const Sled& sled)> cells{};  // by strobe; empty: not known
-    // Of all but these, whose bits are set; not all of them.
+    // Of all except these, whose bits are set; not all of them.
     std::function<Lightmap(const Sled& sled, std::uint64_t out)> map_without{};
-    // The same where images have depth maps.
+    // The same for images with depth maps.
     std::function<std::vector<CellPlane>(
         const DepthMap&, const DepthMaps&, const std::optional<Sled>&)>
         relief_cells{};
     std::function<std::shared_ptr<const ReliefMapMaker>(std::uint64_t out)> relief_without{};
 };
 
-// For the poses of these images, as light_of_rig() has them. Of a rig of more than kMostStrobes
-// nothing is known.
+// For the poses of these images, as in light_of_rig(). Empty for a rig of more than kMostStrobes.
 [[nodiscard]] StrobesAt strobes_of_rig(const Rig& rig,
                                        const std::optional<Navigation>& navigation,
                                        const std::vector<ImageFile>& files,

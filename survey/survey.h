@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A survey: its images, where each was taken, in what light, and by what camera.
+// A survey: its images, their poses, their light, and their camera.
 #pragma once
 
 #include "survey/images/image_files.h"
@@ -17,14 +17,14 @@ namespace aphotic {
 
 struct Survey {
     std::vector<ImageFile> files;
-    std::optional<Navigation> navigation{};  // none: nothing here depends on a pose
-    std::optional<DepthMaps> depth{};        // none: the floor is the navigation's plane
+    std::optional<Navigation> navigation{};  // null: nothing here depends on a pose
+    std::optional<DepthMaps> depth{};        // null: the floor is the navigation's plane
     LightAt light{};                         // without maps, as by default, it is not known
     CameraNumbers camera;
     StrobesAt strobes{};  // none, as by default: the light is not known strobe by strobe
     Dropouts dropouts = Dropouts::Mark;
 
-    // An InputError when the navigation has no pose for it.
+    // An InputError if the navigation has no pose for it.
     [[nodiscard]] Sled sled_of(const ImageFile& file) const {
         return navigation ? navigation->pose_of(file.source).sled : Sled{};
     }

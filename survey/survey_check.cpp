@@ -222,8 +222,8 @@ void check_white(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     }
     found.push_back(
         {.about = "white-level",
-         .what = fmt::format("{:.2g} % of the samples are {:g}, the largest number of all, as "
-                             "where a sensor is saturated{}",
+         .what = fmt::format("{:.2g} % of the samples are {:g}, the largest number of all, as when "
+                             "a sensor saturates{}",
                              kPerCent * share,
                              all.top,
                              std::isfinite(white) ? fmt::format("; the white level is {:g}", white)
@@ -327,7 +327,7 @@ bool check_unit(std::span<const ImageLook> looks,
     const double ratio = double{upper_median(altitudes_m)} / *rig_altitude_m;
     const auto is_near = [](double r) { return r <= kOtherUnit && r >= 1.0 / kOtherUnit; };
     if (is_near(ratio)) return false;
-    std::string unit = "; no unit of length makes them alike: another column, or rig?";
+    std::string unit = "; no unit of length makes them agree: another column or rig?";
     double nearest = kOtherUnit;
     for (const AltitudeUnit& one : kAltitudeUnits) {
         const double other = std::max(ratio * one.metres, 1.0 / (ratio * one.metres));
@@ -388,11 +388,11 @@ bool check_encoding(std::span<const ImageLook> looks,
     std::string what = "the images look gamma-encoded, as a camera's JPEG is";
     if (is_known(line)) {
         what += fmt::format(
-            ": brightness goes as the light to the power {:.2g}; expected: 1, of "
-            "raw images; 0.45 of sRGB",
+            ": brightness goes as the light to the power {:.2g}; expected: 1 for raw images; 0.45 "
+            "for sRGB",
             line.slope);
     }
-    if (is_said) what += "; their files say that they are sRGB";
+    if (is_said) what += "; their files are tagged as sRGB";
     found.push_back({.about = "encoding", .what = what + ". Pass raw images"});
     return true;
 }
@@ -489,8 +489,8 @@ bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     }
     found.push_back(
         {.about = "black-level",
-         .what = fmt::format("no part of any image is darker than {:.3g}, in whatever light, by an "
-                             "offset that light does not explain. Is the black level left out?",
+         .what = fmt::format("no part of any image is darker than {:.3g}, whatever the light: an "
+                             "offset that light does not explain. Is the black level missing?",
                              least)});
     return true;
 }
@@ -562,8 +562,8 @@ void check_depth(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     const double likeness = likeness_of_altitudes(looks);
     if (const auto other = like_other(looks, &ImageLook::as_other_convention)) {
         tell(
-            fmt::format("the images match depths of the other convention ({:.2g}; 0 for that which "
-                        "was taken). Is --depth-is the other?",
+            fmt::format("the images match the other depth convention ({:.2g}; 0 for the one used). "
+                        "Is --depth-is wrong?",
                         *other));
     } else if (const auto plane = like_other(looks, &ImageLook::as_plane)) {
         tell(
@@ -672,7 +672,7 @@ std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks) {
     if (!is_turned(line_through(green.light, green.images))) return std::nullopt;
     return Suspicion{.about = "altitude",
                      .what = "brightness " + words_of_turned(green) +
-                             ": poses of other images, or another altitude column"};
+                             ": poses of other images, or a wrong altitude column"};
 }
 
 std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic mosaic) {
@@ -690,7 +690,7 @@ std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic m
     std::string what = "red over blue " + words_of_turned(ratio) + ": red and blue are swapped";
     if (is_bayer(mosaic)) {
         // A pattern with red and blue in each other's place begins a column and a row further on.
-        what += fmt::format("; --bayer {} puts them right", mosaic_name(shifted(mosaic, 1, 1)));
+        what += fmt::format("; --bayer {} corrects this", mosaic_name(shifted(mosaic, 1, 1)));
     }
     return Suspicion{.about = "bayer", .what = std::move(what)};
 }
@@ -729,20 +729,20 @@ nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions) {
 
 std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks) {
     constexpr double kOff = 0.2;
-    std::vector<double> told;
+    std::vector<double> exposures;
     std::vector<double> levels;
     for (const ImageLook& look : looks) {
-        if (!look.told || !(*look.told > 0.0)) continue;
-        told.push_back(std::log(*look.told));
+        if (!look.stated_exposure || !(*look.stated_exposure > 0.0)) continue;
+        exposures.push_back(std::log(*look.stated_exposure));
         levels.push_back(look.level);
     }
-    const Line line = line_through(told, levels);
+    const Line line = line_through(exposures, levels);
     if (std::abs(line.slope - 1.0) < std::max(kOff, kStandardErrors * line.error))
         return std::nullopt;
     return Suspicion{.about = "exposure",
-                     .what = fmt::format("Exif tells exposures that vary {:.3g}-fold, where the "
-                                         "images' own levels go as their power {:.2g}, expected 1",
-                                         fold_of(told),
+                     .what = fmt::format("the Exif exposures vary {:.3g}-fold, but the images' "
+                                         "levels go as their power {:.2g}; expected: 1",
+                                         fold_of(exposures),
                                          line.slope)};
 }
 
@@ -756,7 +756,7 @@ std::string not_checked(std::span<const ImageLook> looks) {
                            kEnoughImages);
     }
     if (!is_one_altitude(lit_looks)) return {};
-    return fmt::format("altitudes, red for blue: {} images, all of one altitude ({})",
+    return fmt::format("altitudes, red for blue: {} images, all at one altitude ({})",
                        lit_looks.size(),
                        range_of(lit_looks));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What looks wrong about a survey, by a few of its images: numbers that were given and that the
-// images contradict. Each is told only where no right survey does the same, so silence proves
+// What looks wrong about a survey, from a few of its images: given numbers that the images
+// contradict. A problem is reported only where no correct survey shows the same, so silence proves
 // nothing.
 //
 // white level  Light has no largest number, a sensor has. Where the largest number of all, under
@@ -42,8 +42,8 @@
 //              plane; or where the correlation of the navigation's altitudes with the maps' median
 //              depths is under kLikeAltitudes.
 //
-// Slopes are least squares over the images, with the standard error that their residuals give:
-// floors that differ from image to image widen it. Of maps that are alike there is no slope.
+// Slopes are least squares over the images, with the standard error from their residuals, which
+// floors that differ from image to image widen. If the maps hardly differ there is no slope.
 #pragma once
 
 #include "survey/correction.h"
@@ -71,10 +71,10 @@ struct TopNumber {
 };
 [[nodiscard]] TopNumber top_of(const RawImage& raw, bool is_whole_numbers);
 
-// The medians of a mosaic's four sites over black, named row by row.
+// The medians of a mosaic's four sites above black, named row by row.
 [[nodiscard]] std::array<double, 4> site_medians(const RawImage& raw, float black);
 
-// Of one image, by blocks of its green samples that are neither black nor saturated.
+// For one image, by blocks of its green samples that are neither black nor saturated.
 struct Likeness {
     double xx = 0.0;
     double xy = 0.0;
@@ -85,7 +85,7 @@ struct Likeness {
                                 const Lightmap& map,
                                 const Lightmap& other);
 
-// Of one image, by the same blocks of each channel, of all samples that are not saturated.
+// For one image, by the same blocks for each channel, of all samples that are not saturated.
 struct FrameLook {
     Likeness to_map;         // of the green channel: x the map's logarithm
     PerChannel darkest{};    // the mean over black of the block that is darkest
@@ -96,7 +96,7 @@ struct FrameLook {
                                    const SensorLevels& levels,
                                    const Lightmap& map);
 
-// What one image tells.
+// The information from one image.
 struct ImageLook {
     std::string name;
     bool is_for_gain = false;  // the survey's gain is taken from it (corrector.h)
@@ -104,15 +104,15 @@ struct ImageLook {
     float white = 0.0F;
     Mosaic mosaic = Mosaic::None;                // of the whole file, from its top left
     std::optional<std::array<double, 4>> sites;  // of a Bayer mosaic, as its pattern names them
-    // Of images with a map.
-    std::optional<double> altitude_m;  // none: one map for all
+    // For images with a map.
+    std::optional<double> altitude_m;  // empty: one map for all
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
     FrameLook frame;
-    bool says_srgb = false;      // its file
-    LightCells cells{};          // what strobes lit it; where that is judged
-    double level = 0.0;          // its own, over the survey's, where images have an exposure each
-    std::optional<double> told;  // its exposure, by its Exif, in a unit of the survey's own
+    bool says_srgb = false;  // its file
+    LightCells cells{};      // what strobes lit it; where that is judged
+    double level = 0.0;      // its own, over the survey's, where images have an exposure each
+    std::optional<double> stated_exposure;  // from its Exif, relative to the survey's others
     // Of images with a depth map: its median along the axis, and how like the image is to the map
     // of light by the other convention, and to that on the navigation's plane.
     std::optional<double> depth_m{};
@@ -122,16 +122,16 @@ struct ImageLook {
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);
 
-// That of the first; None of no image.
+// That of the first; None for no images.
 [[nodiscard]] Mosaic mosaic_of(std::span<const ImageLook> looks);
 
-// Whether tilts [degrees] are such as radians would be.
+// Whether tilts [degrees] look like radians.
 inline constexpr double kSmall_deg = 0.6;
 
-// Images with light, for a line through them.
+// Images with light, for fitting a line.
 inline constexpr std::size_t kEnoughImages = 12;
 
-// What is about the navigation says nothing of the light.
+// Warnings about the navigation say nothing of the light.
 inline constexpr std::string_view kAboutNavigation = "navigation";
 
 struct Suspicion {
@@ -155,7 +155,7 @@ struct Suspicion {
 // Of images with a level each: where their Exif tells other exposures.
 [[nodiscard]] std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks);
 
-// What no line through images with altitudes can tell of these, and why; or empty.
+// Why a line through images with altitudes can show none of these; or empty.
 [[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);
 
 }  // namespace aphotic

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far one image is from another, sample by sample, absolute scale included.
+// The difference between two images, sample by sample, absolute scale included.
 //
 //   e_i = (a_i - b_i) / max(|b_i|, floor)
 //
@@ -8,15 +8,14 @@
 // floor  what counts as black: under it a difference is measured against it, so that a
 //        rounding of nothing is not an infinite error
 //
-// Reported of |e|: the largest and where it is, the 99.9 percentile (nearest rank), the root
-// mean square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
+// Reported for |e|: the largest and its place, the 99.9 percentile (nearest rank), the root mean
+// square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
 //
-// Samples on edges, where a pixel's centre falls on either side by rounding, are counted and
-// measured on their own. Of those in penumbrae (validation.h) it is also told how many they are and
-// how far a is from the emitters themselves, which no bound holds. A comparison holds when the
-// largest |e| off the edges is within the bound, every sample, on edges too, is finite, and there
-// is at least one off the edges. What was never observed, as in an average of images, is counted
-// and no more.
+// Samples on edges, where rounding decides on which side a pixel's centre falls, are counted and
+// measured separately. For those in penumbrae (validation.h) the number is reported, and how far a
+// is from the emitters themselves, which no bound covers. A comparison holds if the largest |e| off
+// the edges is within the bound, every sample, on edges too, is finite, and there is at least one
+// off the edges. Samples never observed, as in an average of images, are only counted.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -51,7 +50,7 @@ struct Comparison {
     }
 };
 
-// How a sample is marked that is not compared like the others.
+// The mark of a sample that is not compared like the others.
 inline constexpr unsigned char kOnEdge = 1;
 inline constexpr unsigned char kUnobserved = 2;
 
@@ -67,7 +66,7 @@ inline constexpr unsigned char kUnobserved = 2;
 // The errors and counts by their names.
 [[nodiscard]] nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
-// e of one sample; NaN when either is not finite.
+// e of one sample; NaN if either is not finite.
 [[nodiscard]] double relative_error(double a, double b, double floor);
 
 }  // namespace aphotic

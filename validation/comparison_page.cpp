@@ -29,8 +29,8 @@ struct Blocks {
     std::vector<double> reference;
 };
 
-// For pictures of half a page's width. Two pixels or more where some were not observed: a block of
-// a mosaic holds every colour.
+// For pictures of half a page's width. Two pixels or more if some were not observed: a block of a
+// mosaic holds every colour.
 int side_of(const ComparedImages& images) {
     const bool is_whole = std::ranges::all_of(images.channels, [](const ComparedChannel& channel) {
         return channel.comparison.unobserved == 0;
@@ -51,7 +51,7 @@ std::vector<PagePart> patterns(const Blocks& blocks, const ComparedImages& image
     ValueRange range;
     range.include(blocks.image);
     range.include(blocks.reference);
-    if (range.is_empty()) return {"No sample of both was observed."};
+    if (range.is_empty()) return {"No sample was observed in both."};
     const auto figure = [&](const std::vector<double>& values,
                             std::string words,
                             std::string caption) {
@@ -77,7 +77,7 @@ std::vector<PagePart> patterns(const Blocks& blocks, const ComparedImages& image
                 "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)};
 }
 
-// Of each sample, by the rule; what was never observed is set apart.
+// For each sample, by the rule; samples never observed are marked.
 std::vector<PagePart> differences(const ComparedChannel& channel,
                                   const ComparedImages& images,
                                   int side) {
@@ -87,7 +87,7 @@ std::vector<PagePart> differences(const ComparedChannel& channel,
     std::vector<float> reference = channel.reference;
     for (std::size_t i = 0; i < image.size(); ++i) {
         if (!channel.marks.empty() && channel.marks[i] == kUnobserved) {
-            image[i] = reference[i] = 0.0F;  // neither here nor there, and no fault
+            image[i] = reference[i] = 0.0F;  // neither compared nor a fault
             errors.push_back(kNaN);
         } else {
             errors.push_back(
@@ -177,7 +177,7 @@ PageList not_compared(const ComparedImages& images) {
     };
     add("Only in " + named(images.image), images.only_in_image);
     add("Only in " + named(images.reference), images.only_in_reference);
-    add("Left aside", images.left_aside);
+    add("Not compared", images.left_aside);
     return items;
 }
 
@@ -185,13 +185,12 @@ PageSection numbers(const ComparedImages& images) {
     PageSection made{
         .id = "numbers",
         .heading = "Errors",
-        .parts = error_rule(
-            images.scaled ? "the image’s sample, divided by its channel’s scale"
-                          : "the image’s sample",
-            "the reference’s sample",
-            fmt::format("what counts as black, {} of the reference’s largest sample: under it a "
-                        "difference is measured against it",
-                        scientific(images.black)))};
+        .parts = error_rule(images.scaled ? "the image’s sample, divided by its channel’s scale"
+                                          : "the image’s sample",
+                            "the reference’s sample",
+                            fmt::format("what counts as black, {} of the reference’s largest "
+                                        "sample: below it, errors are relative to it",
+                                        scientific(images.black)))};
     made.parts.emplace_back(table(images));
     if (PageList left = not_compared(images); !left.empty()) {
         made.parts.emplace_back(PageHeading{"Channels not compared"});
@@ -219,7 +218,7 @@ std::string comparison_html(const ComparedImages& images) {
                                       images.are_within() ? "within" : "not within",
                                       scientific(images.channels.front().comparison.bound),
                                       named(images.reference),
-                                      images.scaled ? ", but for its scale" : ""),
+                                      images.scaled ? ", apart from its scale" : ""),
               .sections = {numbers(images)}};
     if (images.unpaired() > 0) {
         page.said.push_back(fmt::format("But {} without a partner in the other image.",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two images beside each other on a page, as the source paper's figure 8 has the observed pattern
-// of light and the modelled one: false colours under one scale, the relative error as a
-// validation's page has it, and profiles through the middle.
+// Two images side by side on a page, like the observed and the modelled light in the source paper's
+// figure 8: false colours on one scale, the relative error as on a validation's page, and profiles
+// through the middle.
 //
-// Images and profiles are shown by square blocks of pixels, each the mean of what was observed in
-// it: the sites of a mosaic and noise do not hide the pattern so. Errors are those of the samples.
+// Images and profiles are shown in square blocks of pixels, each the mean of its observed samples,
+// so that a mosaic's sites and noise do not hide the pattern. Errors are those of the samples.
 #pragma once
 
 #include "validation/comparison.h"
@@ -35,7 +35,7 @@ struct ComparedImages {
     double black = 0.0;  // as a share of the reference's largest sample
     bool scaled = false;
     std::vector<ComparedChannel> channels;
-    // Of the images, and not compared: without a partner, which is a no, or needing none.
+    // In either image, and not compared: without a partner, which fails, or needing none.
     std::vector<std::string> only_in_image{};
     std::vector<std::string> only_in_reference{};
     std::vector<std::string> left_aside{};
@@ -43,7 +43,7 @@ struct ComparedImages {
     [[nodiscard]] std::size_t unpaired() const {
         return only_in_image.size() + only_in_reference.size();
     }
-    // All that was compared is within its bound.
+    // Everything that was compared is within its bound.
     [[nodiscard]] bool are_within() const {
         return std::ranges::all_of(
             channels, [](const ComparedChannel& channel) { return channel.comparison.holds(); });
@@ -51,7 +51,7 @@ struct ComparedImages {
     [[nodiscard]] bool holds() const { return are_within() && unpaired() == 0; }
 };
 
-// A file by itself, well-formed as HTML and as XML.
+// A self-contained file, well-formed as HTML and as XML.
 [[nodiscard]] std::string comparison_html(const ComparedImages& images);
 
 // False colour of a share of the scale, 0 to 1, dark blue over green to yellow: 0xRRGGBB. It gets

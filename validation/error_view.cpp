@@ -81,7 +81,7 @@ SvgAxis value_axis(const Profile& profile) {
     return linear_axis(range.least, range.most + 0.07 * (range.most - range.least), 5);
 }
 
-// Shows the bound too when it is not far from the errors.
+// Shows the bound too if it is not far from the errors.
 SvgAxis error_axis(std::span<const Profile> profiles) {
     constexpr double kNear = 4.0;
     ValueRange errors{.least = 0.0, .most = 0.0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a page shows relative errors (comparison.h): their rule as a formula, the map of one channel
-// with the worst pixel ringed and what its colours mean, and profiles along a line of pixels.
+// How a page shows relative errors (comparison.h): the formula, the map of one channel with the
+// worst pixel ringed and a colour key, and profiles along a line of pixels.
 #pragma once
 
 #include "report/page.h"
@@ -14,23 +14,23 @@
 
 namespace aphotic {
 
-// With what a, b and b0 stand for.
+// With the meanings of a, b and b0.
 [[nodiscard]] std::vector<PagePart> error_rule(std::string a, std::string b, std::string black);
 
 struct MappedErrors {
     const Comparison* comparison = nullptr;
-    // Rows of width_px samples; NaN where nothing was compared, or not finite in one of the images.
+    // Rows of width_px samples; NaN where nothing was compared, or one of the images is not finite.
     std::span<const float> errors{};
     std::span<const float> image{};
     std::span<const float> reference{};
     int width_px = 0;
-    int least_side = 1;        // of the blocks of pixels that are shown as one
+    int least_side = 1;        // of the blocks of pixels shown as one
     std::string image_name{};  // "POV-Ray"
-    std::string set_apart{};   // what is grey: "on edges: 12 pixels"; empty: nothing is
+    std::string set_apart{};   // the key of grey: "on edges: 12 pixels"; empty: no grey
 };
 
-// The map, its legend and a paragraph. The colours run to the 99.9 percentile, rounded
-// up, so that the details show and not only the largest.
+// The map, its legend and a paragraph. The colours run to the 99.9 percentile, rounded up, so that
+// details show and not only the largest error.
 [[nodiscard]] std::vector<PagePart> error_map_parts(const MappedErrors& mapped);
 
 // A channel along the middle row or column of both images.
@@ -43,7 +43,7 @@ struct Profile {
     double bound = 0.0;            // of the errors
 };
 
-// All channels below each other. pixels: along the line. id: of the drawing.
+// All channels, one below the other. pixels: along the line. id: of the drawing.
 [[nodiscard]] PagePlot profile_plot(std::string_view id,
                                     bool is_row,
                                     int pixels,

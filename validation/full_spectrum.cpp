@@ -27,7 +27,7 @@ template <unsigned kPoints>
 std::vector<GaussPoint> gauss_rule() {
     using Gauss = boost::math::quadrature::gauss<double, kPoints>;
     std::vector<GaussPoint> rule;
-    // Boost lists the abscissae that are not negative; the rule is symmetric.
+    // Boost lists only the abscissae that are not negative; the rule is symmetric.
     for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
         const double at = Gauss::abscissa()[k];
         rule.push_back({.at = at, .width = Gauss::weights()[k]});
@@ -37,7 +37,7 @@ std::vector<GaussPoint> gauss_rule() {
     return rule;
 }
 
-// From none, which does where all light is spent; the last is what the others are held to.
+// From none, which is enough where all light is spent; the last is the standard for the others.
 const std::array<std::vector<GaussPoint>, 8>& gauss_rules() {
     static const std::array<std::vector<GaussPoint>, 8> kRules{std::vector<GaussPoint>{},
                                                                gauss_rule<1>(),
@@ -75,8 +75,8 @@ std::vector<Group> groups_of(const LightFamily& lights, const VeilLights& veil) 
     return groups;
 }
 
-// What some wavelengths add to the signals: channels by lights, relative to the least loss at the
-// longest path, so that no double ends.
+// The contribution of some wavelengths to the signals: channels by lights, relative to the least
+// loss at the longest path, so that no double underflows.
 class Signals {
   public:
     Signals(const Sensor& sensor,

@@ -40,13 +40,13 @@ bool is_about_samples(const std::string& name) {
     return name.starts_with("count.") || name.starts_with("stderr.");
 }
 
-// Of a layer too, such as beauty.A.
+// Also of a layer, such as beauty.A.
 bool is_opacity(const std::string& name) {
     const std::string last = name.substr(name.rfind('.') + 1);
     return last == "A" || last == "alpha" || last == "Alpha";
 }
 
-// Of the same quantity and wavelength; taken out of those that are free. "" for none.
+// The free channel of the same quantity and wavelength, which is then taken. "" for none.
 std::string taken_partner(const std::string& name, std::vector<std::string>& free) {
     const auto found = std::ranges::find_if(
         free, [&](const std::string& other) { return is_same_spectral_channel(name, other); });
@@ -56,7 +56,7 @@ std::string taken_partner(const std::string& name, std::vector<std::string>& fre
     return partner;
 }
 
-// scaled: one factor cannot scale counts and standard errors as well, so these are left aside.
+// scaled: one factor cannot scale counts and standard errors as well, so these are ignored.
 ChannelPairs pair_channels(const std::vector<std::string>& image,
                            const std::vector<std::string>& reference,
                            bool scaled) {
@@ -88,9 +88,9 @@ ChannelPairs pair_channels(const std::vector<std::string>& image,
     return pairs;
 }
 
-// Those that the user names, as either image has them, separated by commas. A name may hold commas
-// itself, as S0.550,000000nm does. Throws InputError when one is not in both images, or none is
-// named.
+// The channels that the user names, by either image's names, separated by commas. A name may
+// contain commas, such as S0.550,000000nm. Throws InputError if one is not in both images, or none
+// is named.
 ChannelPairs named_channels(const std::string& names,
                             const std::vector<std::string>& image,
                             const std::vector<std::string>& reference) {
@@ -137,7 +137,7 @@ std::vector<float> samples_of(const AnyImage& image, const std::string& channel)
     return image.samples(static_cast<std::size_t>(found - image.channels.begin()));
 }
 
-// Marks what either image says that it never observed.
+// Marks samples that either image records as never observed.
 std::vector<unsigned char> unobserved_in(const AnyImage& a,
                                          const AnyImage& b,
                                          const ChannelPair& channel) {
@@ -155,7 +155,7 @@ std::vector<unsigned char> unobserved_in(const AnyImage& a,
     return marks;
 }
 
-// Of every channel, the same or each its own.
+// For every channel, the same or each its own.
 std::vector<double> scales_of(const AnyImage& a,
                               const AnyImage& b,
                               const std::vector<ChannelPair>& channels,

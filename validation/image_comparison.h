@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far an image is from its reference, channel by channel, both of any format.
+// The difference between an image and its reference, channel by channel, both of any format.
 //
 //   e = (a / scale - b) / max(|b|, black * largest |b|)
 //
 // a, b   samples of image and reference, of channels that are one quantity
 // scale  1, or what fits the image to the reference best (scaling.h)
 //
-// What either image says that it never observed (count.NAME of 0) is not compared.
+// Samples that either image records as never observed (count.NAME of 0) are not compared.
 //
-// Which channels of two images are compared, and what becomes of the others: none is passed over in
-// silence. Partners have one name, or are one quantity at one wavelength whatever its spelling
+// Which channels of two images are compared, and what happens to the others: none is skipped
+// silently. Partners have the same name, or the same quantity and wavelength in any spelling
 // (spectral/channel_wavelength.h). A channel that the other image lacks has no partner, unless it
-// is one of these, which are left aside: opacity (A, alpha), and what `aphotic observe` says of its
-// averages (count.NAME, stderr.NAME).
+// is one that needs none: opacity (A, alpha), and counts and standard errors from `aphotic observe`
+// (count.NAME, stderr.NAME).
 #pragma once
 
 #include "validation/comparison_page.h"
@@ -31,7 +31,7 @@ struct ComparisonRequest {
     std::string reference;
     double bound = 6e-4;                  // of |e|
     double black = 1e-6;                  // as a share of the reference's largest sample
-    std::optional<std::string> channels;  // that the user names; otherwise all
+    std::optional<std::string> channels;  // named by the user; otherwise all
     ComparedScale scale = ComparedScale::None;
     bool keep_samples = false;  // for a page; otherwise one channel's are in memory at a time
 };

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the model of water that scatters leaves out: light that is turned more than once on its way
-// into the view, blur, the floor's light that the water sends back to it. The model, as the
-// reference has it, is held against light of all orders (monte_carlo.h) at kPlacesAcross x
-// kPlacesDown places of the image, for each channel at the mean wavelength of its light from a
-// level floor:
+// The model error estimate for water that scatters: light scattered more than once on its way into
+// the view, blur, and floor light that the water scatters back onto the floor. The model, as in the
+// reference, is compared with light of all orders (monte_carlo.h) at kPlacesAcross x kPlacesDown
+// places of the image, for each channel at the mean wavelength of its light from a level floor:
 //
 //   error = (floor + veil) / truth - 1                              of one place
 //   rms   = sqrt(sum of g (|error| + tail / truth)^2 / sum of g)    of a channel: the estimate
@@ -14,10 +13,10 @@
 //       square over the whole image, where even places gave 6 to 16 % less.
 // tail  light of more scatterings than a path is followed for, of the truth (monte_carlo.h)
 //
-// The truth's own noise is part of rms, so that it is no less than it can be told. It is an
-// estimate and no bound, and never added to the promise, which is of the formulas.
+// The truth's own noise is part of rms, so rms is no smaller than can be determined. It is an
+// estimate and not a bound, and never added to the promise, which covers the formulas.
 //
-// Of the bare floor: objects, highlights and vignetting are set aside.
+// For the bare floor: objects, highlights and vignetting are ignored.
 #pragma once
 
 #include "image/camera_image.h"
@@ -56,7 +55,7 @@ struct ModelCheck {
     [[nodiscard]] std::array<double, kChannels> rms() const;
 };
 
-// Of water that scatters; without places for any other. Threads change no bit.
+// For water that scatters; without places for any other. Threads change no bit.
 [[nodiscard]] ModelCheck check_model(const Rig& rig,
                                      std::size_t paths,
                                      int threads,

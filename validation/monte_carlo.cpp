@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-// Paths whose importance has fallen to this share live on by chance, with this share of it.
+// Paths whose importance has fallen to this share survive by chance (Russian roulette), with this
+// share of it.
 constexpr double kLeastShare = 0.1;
 
 // A unit vector at an angle from another.
@@ -27,7 +28,7 @@ Vector3d turned(const Vector3d& from, double angle_rad, double azimuth_rad) {
            std::sin(angle_rad) * (std::cos(azimuth_rad) * side + std::sin(azimuth_rad) * other);
 }
 
-// Of a number that many paths each tell.
+// Statistics of a number that many paths each contribute.
 struct Tally {
     double sum = 0.0;
     double squares = 0.0;
@@ -50,7 +51,7 @@ double down_cosine_height(const Rig& rig, const Vector3d& down, const Vector3d& 
 
 }  // namespace
 
-// Numbers that every standard library makes alike, which its distributions do not.
+// Random numbers that are equal in every standard library, unlike its distributions.
 class MonteCarlo::Dice {
   public:
     Dice(std::uint64_t seed, std::uint64_t stream) {
@@ -97,7 +98,7 @@ struct MonteCarlo::Path {
         return std::max(0.0, down_cosine_height(light.rig_, light.down_, from_m)) / approach;
     }
 
-    // How likely the path goes on this way.
+    // The probability density of this direction for the path.
     [[nodiscard]] double density(const Vertex& at, const Vector3d& direction) const {
         if (at.is_floor) return std::max(0.0, -light.down_.dot(direction)) / std::numbers::pi;
         return light.turns_.density(angle_between(at.arriving, direction));
@@ -111,7 +112,7 @@ struct MonteCarlo::Path {
         return turned(at.arriving, light.turns_.quantile(dice.roll()), azimuth);
     }
 
-    // What lies between a vertex, a direction from it, and a lamp.
+    // The geometry of a vertex, a direction from it, and a lamp.
     struct Triangle {
         double far_m;  // D
         double h_m;
@@ -134,7 +135,7 @@ struct MonteCarlo::Path {
                std::exp(-light.attenuation_per_m_ * path_m);
     }
 
-    // Whichever way y was drawn.
+    // The combined density of all ways to draw y.
     void join_over(const Vertex& at, std::size_t s, const Vector3d& y_m) {
         const Vector3d to_y = y_m - at.place_m;
         const Vector3d to_lamp = lamps_m[s] - at.place_m;
@@ -195,7 +196,7 @@ struct MonteCarlo::Path {
         }
     }
 
-    // A ray whose direction is given: evenly over the angle at the lamp.
+    // For a ray whose direction is given: evenly over the angle at the lamp.
     void join_on_sight(const VeilRay& ray, double stratum) {
         for (std::size_t s = 0; s < lamps_m.size(); ++s) {
             const Triangle triangle(
@@ -221,7 +222,7 @@ struct MonteCarlo::Path {
         }
     }
 
-    // What a path may yet bring: a random walk that is D away from the lamps comes back with a
+    // A path's remaining importance: a random walk at distance D from the lamps returns with a
     // probability of about 1/(c D). Without this, paths in water that absorbs nothing stray for
     // thousands of turns.
     [[nodiscard]] double importance(const Vertex& at) const {
@@ -263,8 +264,8 @@ struct MonteCarlo::Path {
     void trace(const VeilRay& ray, double stratum) {
         const double c = light.attenuation_per_m_;
         const double b = light.turns_.scattering_per_m();
-        // To the floor and not, each with its share: little light comes from the floor in turbid
-        // water, and little from elsewhere in clear water.
+        // Paths to the floor and not, each with its share: little light comes from the floor in
+        // turbid water, and little from elsewhere in clear water.
         const double through = std::isfinite(ray.length_m) ? std::exp(-c * ray.length_m) : 0.0;
         if (through > 0.0) {
             follow({.place_m = ray.origin_m + ray.length_m * ray.direction,

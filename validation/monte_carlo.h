@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Light of all orders of scattering over the rig's flat floor, at one wavelength, by random paths
-// from the camera: the truth that the model's K and single scattering (spectral/water.h,
-// light/veil.h) are held against.
+// from the camera: the truth for the model's K and single scattering (spectral/water.h,
+// light/veil.h).
 //
-// A path leaves the camera along a pixel's ray. At rate b_t it is turned, by an angle of the phase
-// function; at the floor it goes on as a Lambertian surface reflects; on all of its length it loses
-// a. From each vertex x, lamps are joined in two ways:
+// A path leaves the camera along a pixel's ray. It is scattered at rate b_t, by an angle from the
+// phase function; at the floor it is reflected like by a Lambertian surface; along its length it is
+// attenuated by a. From each vertex x, lamps are connected in two ways:
 //
 //   at the floor    straight to the lamp:  rho/pi cos(i) I exp(-c d) / d^2
 //   over one turn   to a point y and from there to the lamp, with psi the turn at y:
@@ -33,8 +33,8 @@
 //          together bring 1/(sqrt(2) - 1) times what the second half of the turns followed did.
 //          Any absorption makes it less.
 //
-// The same seed gives the same bits. A standard error is of the mean, from the paths' own spread.
-// Limits: no objects, no highlight; the sea has no surface.
+// The same seed gives the same bits. A standard error is that of the mean, from the paths' own
+// spread. Limits: no objects, no highlight; the sea has no surface.
 #pragma once
 
 #include "rig/rig.h"
@@ -60,7 +60,7 @@ inline constexpr int kMostTurns = 250;
 struct MonteCarloOptions {
     std::size_t paths = 10000;
     std::uint64_t seed = 1;
-    // Scatterings of a path; fewer for those who look at an order by itself.
+    // Scatterings of a path; fewer to examine single orders.
     int most_turns = kMostTurns;
     double least_turn_rad = kLeastTurn;
 };
@@ -79,11 +79,11 @@ struct LightOfAllOrders {
 
 class MonteCarlo {
   public:
-    // Throws InputError where the rig has objects or a highlight.
+    // Throws InputError if the rig has objects or a highlight.
     MonteCarlo(const Rig& rig, double lambda_nm, const MonteCarloOptions& options);
 
     // Radiance along the ray, to the floor at its end; infinite length: no floor there. stream:
-    // other numbers for each ray.
+    // different random numbers for each ray.
     [[nodiscard]] LightOfAllOrders radiance(const VeilRay& ray, std::uint64_t stream) const;
 
   private:

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kPatchColumns{"patch", "x", "y", "w", "h", "reference"};
 constexpr std::size_t kNeededPatchColumns = 5;  // of these
 
-// Where a line has which of kPatchColumns; past its end: nowhere.
+// The column of each of kPatchColumns in a line; past its end: absent.
 using PatchLayout = std::array<std::size_t, kPatchColumns.size()>;
 
 PatchLayout layout_of(const std::string& name,
@@ -31,7 +31,7 @@ PatchLayout layout_of(const std::string& name,
         const auto found = std::ranges::find(columns, kPatchColumns[i]);
         layout[i] = static_cast<std::size_t>(found - columns.begin());
         if (std::ranges::count(columns, kPatchColumns[i]) > 1)
-            fail_at_line(name, line, "the column '{}' stands twice", kPatchColumns[i]);
+            fail_at_line(name, line, "duplicate column '{}'", kPatchColumns[i]);
         if (i >= kNeededPatchColumns || found != columns.end()) continue;
         fail_at_line(name,
                      line,
@@ -53,7 +53,7 @@ std::vector<double> numbers_in(std::string_view text) {
     return numbers;
 }
 
-// What the reference says. False when that is nothing that we know.
+// Parses the reference. False if it is not recognised.
 bool take_reference(Patch& patch) {
     constexpr double kMostLightness = 100.0;
     constexpr double kMostChroma = 200.0;
@@ -100,7 +100,7 @@ Patch patch_in(const std::string& name,
         return layout[column] < fields.size() ? fields[layout[column]] : std::string_view();
     };
     Patch patch{.name = std::string(field(0)), .line = line};
-    if (patch.name.empty()) fail_at_line(name, line, "patch: found no name; allowed: any");
+    if (patch.name.empty()) fail_at_line(name, line, "patch: found no name; allowed: any name");
     constexpr int kMost_px = 1 << 20;
     const std::array<int*, 4> sizes{&patch.x_px, &patch.y_px, &patch.width_px, &patch.height_px};
     for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -135,7 +135,7 @@ std::vector<Patch> parse_patches(const std::string& name, std::string_view text)
         else
             layout = layout_of(name, line, fields);
     });
-    if (patches.empty()) fail_at_line(name, lines + 1, "the file ends without a line of a patch");
+    if (patches.empty()) fail_at_line(name, lines + 1, "the file ends without a patch");
     return patches;
 }
 

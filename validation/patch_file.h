@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which rectangles of an image show patches of known colour: CSV with a header row, columns in any
-// order, others among them.
+// The rectangles of an image that show patches of known colour: CSV with a header row, columns in
+// any order, possibly among others.
 //
 //   patch,x,y,w,h,reference
 //   panel fore,120,80,40,40,0.18
@@ -13,8 +13,8 @@
 //               66.2 14.5 17  a colour in CIELAB under D65
 //               light-skin    a patch of the colour chart (spectral/colour_chart.h)
 //
-// Lines that are empty or begin with # are passed over. What cannot be understood is an InputError
-// that names the line.
+// Empty lines and lines that begin with # are skipped. An error is an InputError that names the
+// line.
 #pragma once
 
 #include "spectral/colour_difference.h"
@@ -33,13 +33,13 @@ struct Patch {
     int y_px = 0;
     int width_px = 0;
     int height_px = 0;
-    std::string reference{};  // as written: patches of one are of one kind
+    std::string reference{};  // as written: patches with the same one are of one kind
     bool is_grey = false;
-    std::optional<Lab> lab{};  // none: not known
+    std::optional<Lab> lab{};  // empty: unknown
     std::size_t line = 0;
 };
 
-// name stands in messages.
+// name is for messages.
 [[nodiscard]] std::vector<Patch> parse_patches(const std::string& name, std::string_view text);
 
 }  // namespace aphotic

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How an image shows patches of known colour, as colour correction under water is judged.
+// How well an image shows patches of known colour, by the measures used for underwater colour
+// correction.
 //
-// Of a patch with mean signal M_c over its pixels, c = R, G, B, and S_c = M_c / k_c:
+// For a patch with mean signal M_c over its pixels, c = R, G, B, and S_c = M_c / k_c:
 //
 //   degrees     of grey patches, the angle between S and 1, 1, 1
 //   difference  CIEDE2000 between S, taken for linear sRGB, and the reference
@@ -39,7 +40,7 @@ struct PatchScores {
     std::vector<PatchScore> patches{};
     std::array<double, 3> scale{1.0, 1.0, 1.0};  // k
     double unevenness = 0.0;
-    // Means and medians of those that there are; none: there are none.
+    // Means and medians of existing values; empty if there are none.
     std::optional<double> mean_degrees{};
     std::optional<double> median_degrees{};
     std::optional<double> mean_difference{};
@@ -53,8 +54,8 @@ struct PatchRequest {
     bool is_srgb = false;  // the samples are encoded as sRGB's are; else linear
 };
 
-// Throws InputError for an image without R, G, B, a patch that reaches beyond it, and a scale that
-// no patch tells.
+// Throws InputError for an image without R, G, B, a patch outside it, and a scale that no patch
+// determines.
 [[nodiscard]] PatchScores score_patches(const PatchRequest& request);
 [[nodiscard]] nlohmann::ordered_json to_json(const PatchScores& scores);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a validation found, for programs (validation.json) and for people (report.html: one page
+// The results of a validation, for programs (validation.json) and for people (report.html: one page
 // that needs no other file, no script and no network).
 #pragma once
 
@@ -27,7 +27,7 @@ struct EdgeSummary {
 
 struct ValidationReport {
     Rig rig;
-    std::string scene_file{};  // of the user's own, which POV-Ray rendered and the reference not
+    std::string scene_file{};  // the user's, which POV-Ray rendered and the reference did not
     std::string aphotic_version{};
     std::string povray_version{};
     std::vector<Comparison> wavelengths{};  // radiance, POV-Ray's against the reference's
@@ -36,11 +36,11 @@ struct ValidationReport {
     CameraImage rendered{};                 // signals, through POV-Ray
     CameraImage traced{};                   // signals, by the reference over the full spectrum
     std::array<double, kChannels> lamp_signal{};  // the white of both previews
-    // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
-    // not finite.
+    // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is not
+    // finite.
     std::vector<float> channel_errors{};
-    VeilShare veil_share{};  // by the reference; 0 where the water does not scatter
-    // The reference against light of all orders, of water that scatters, if asked for.
+    VeilShare veil_share{};  // in the reference; 0 if the water does not scatter
+    // The reference against light of all orders, in water that scatters, if requested.
     ModelCheck model{};
     std::size_t frames = 0;
     std::size_t grid_size = 0;  // wavelengths of the reference
@@ -54,19 +54,19 @@ struct ValidationReport {
     [[nodiscard]] std::vector<const Comparison*> all() const;
     // Every comparison holds, and there is one.
     [[nodiscard]] bool holds() const;
-    // The one that is worst against its bound; the first of equals.
+    // The one that is worst against its bound; the first in a tie.
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
     [[nodiscard]] EdgeSummary edges() const;
-    // Throws std::logic_error, our own mistake, when the parts do not fit together: what is
-    // written below would be read out of bounds.
+    // Throws std::logic_error, our own mistake, if the parts do not fit together, since writing
+    // would read out of bounds.
     void check() const;
 };
 
-// max_error / bound; 0 when both are 0, infinite when a sample is not finite.
+// max_error / bound; 0 if both are 0, infinite if a sample is not finite.
 [[nodiscard]] double share_of_bound(const Comparison& comparison);
 
-// {holds, worst, rig, rule, wavelengths, channels, versions, ...}: every number above but the
+// {holds, worst, rig, rule, wavelengths, channels, versions, ...}: every number above except the
 // pixels. A number that is not finite is null.
 [[nodiscard]] std::string validation_json(const ValidationReport& report);
 void write_validation_json(const ValidationReport& report, const std::filesystem::path& file);

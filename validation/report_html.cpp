@@ -58,25 +58,24 @@ std::string worst_in_words(const ValidationReport& report) {
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
-    std::string words =
-        edges.share == 0.0
-            ? "No pixel is on an edge."
-            : fmt::format(
-                  "On edges, which have no bound, are up to {} % of the pixels; the largest "
-                  "relative error there is {}.",
-                  scientific(kPercent * edges.share),
-                  scientific(edges.max_error));
+    std::string words = edges.share == 0.0
+                            ? "No pixel is on an edge."
+                            : fmt::format(
+                                  "Up to {} % of the pixels are on edges, which have no bound; the "
+                                  "largest relative error there is {}.",
+                                  scientific(kPercent * edges.share),
+                                  scientific(edges.max_error));
     if (edges.share_in_penumbrae > 0.0) {
         words += fmt::format(
-            " In the penumbrae of emitters are {} %: these are compared with the render’s own "
-            "lamps. From an emitter of more lamps they differ by up to {}.",
+            " {} % are in the penumbrae of emitters, where the reference uses the render’s own "
+            "lamps; an emitter of more lamps differs by up to {}.",
             scientific(kPercent * edges.share_in_penumbrae),
             scientific(edges.max_error_of_penumbrae));
     }
     return words;
 }
 
-// That two different scenes were compared has to be known before any number.
+// The reader must know before any number that two different scenes were compared.
 std::vector<std::string> other_scene(const ValidationReport& report) {
     if (report.scene_file.empty()) return {};
     return {fmt::format(
@@ -102,7 +101,7 @@ std::vector<std::string> verdict(const ValidationReport& report) {
     return said;
 }
 
-// Both under the reference's scale.
+// Both on the reference's scale.
 std::vector<PagePart> images(const ValidationReport& report) {
     const int side = block_side(report.traced.width_px, report.traced.height_px);
     const CameraImage traced = block_means(report.traced, side);
@@ -127,7 +126,9 @@ std::vector<PagePart> images(const ValidationReport& report) {
                                            grouped_count(report.grid_size, "wavelength")))}},
         fmt::format("The camera’s signals at the same exposure and white: the lamps’ own light "
                     "is grey, channels are shown as sRGB. Top is forward, right is starboard.{}",
-                    side > 1 ? fmt::format(" Shown by means of {0} × {0} pixels.", side) : "")};
+                    side > 1
+                        ? fmt::format(" Each point shown is the mean of {0} × {0} pixels.", side)
+                        : "")};
 }
 
 std::span<const float> plane(const std::vector<float>& samples, std::size_t channel) {
@@ -167,8 +168,8 @@ Profile profile_of(const ValidationReport& report, std::size_t c, bool is_row) {
 
 std::vector<PagePart> profiles(const ValidationReport& report) {
     std::vector<PagePart> parts{
-        "Both renderers over each other through the middle of the image; beneath each channel, "
-        "its relative error pixel by pixel.",
+        "Profiles of both renderers through the middle of the image; below each channel, its "
+        "relative error at each pixel.",
         PageLegend{stroke_key("reference", "reference"),
                    stroke_key("rendered", "POV-Ray"),
                    stroke_key("bound", "bound of the error")}};
@@ -226,7 +227,7 @@ std::vector<PagePart> numbers(const ValidationReport& report) {
     std::vector<PagePart> parts =
         error_rule("POV-Ray’s sample",
                    "the reference’s sample",
-                   "what counts as black: under it a difference is measured against it");
+                   "what counts as black: below it, errors are relative to it");
     parts.emplace_back(
         "A comparison holds when the largest |e| off the edges is within its bound and every "
         "sample, on edges too, is finite. No factor is fitted: the absolute scale is part of it. "
@@ -261,14 +262,15 @@ std::vector<PagePart> model_check(const ModelCheck& model) {
                        ratio_to(place.veil, place.truth.veil),
                        ratio_to(place.floor + place.veil, place.truth.sum)}});
     }
-    return {fmt::format("The reference’s single scattering over light of all orders, by {} random "
-                        "paths for each place: 1 is a model that leaves nothing out. ± is one "
-                        "standard error.",
-                        grouped(model.paths)),
-            std::move(made)};
+    return {
+        fmt::format(
+            "The reference’s single scattering over light of all orders, by {} random paths for "
+            "each place: 1 means that the model leaves nothing out. ± is one standard error.",
+            grouped(model.paths)),
+        std::move(made)};
 }
 
-// What no rig file says: how much of the floor is in view, where that is level.
+// The part of the floor in view if it is level, which no rig file states.
 std::string field_of_view(const Rig& rig) {
     const Camera& camera = rig.camera;
     const double middle_nm = (camera.range.first_nm + camera.range.last_nm) / 2.0;
@@ -304,7 +306,7 @@ std::string field_of_view(const Rig& rig) {
                                       field(index),
                                       plain(middle_nm))
                         : field(1.0)) +
-           fmt::format(", or some {:.2g} m × {:.2g} m of a level floor",
+           fmt::format(", or about {:.2g} m × {:.2g} m of a level floor",
                        floor_m(across_rad(index)),
                        floor_m(along_rad(index)));
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The pictures of a report, small enough to travel inside its page.
+// The pictures of a report, small enough to embed in its page.
 //
-// A large image is shown by square blocks of pixels: of a camera's image each block's mean, of
-// an error map each block's largest |e|, with its sign, so that no error is averaged away.
+// A large image is shown in square blocks of pixels: for a camera's image each block's mean, for an
+// error map each block's largest |e|, with its sign, so that no error is averaged away.
 //
 //   colour(e) = blue for -scale .. white for 0 .. red for +scale, in kColourSteps steps
 //
-// Errors beyond the scale get the colour of its end. A block is grey when all of it lies on
-// edges, black when any sample in it is not finite.
+// Errors beyond the scale get the colour of its end. A block is grey if all of it lies on edges,
+// black if any of its samples is not finite.
 #pragma once
 
 #include "image/output_images.h"
@@ -33,8 +33,8 @@ inline constexpr std::uint32_t kNotFiniteColour = 0x000000;
 
 [[nodiscard]] CameraImage block_means(const CameraImage& image, int side);
 
-// The same of one channel, leaving out what is marked as unobserved (comparison.h): NaN where
-// nothing is left. marks may be empty.
+// The same for one channel, ignoring samples marked as unobserved (comparison.h): NaN where nothing
+// is left. marks may be empty.
 [[nodiscard]] std::vector<double> block_means(std::span<const float> samples,
                                               int width_px,
                                               int side,

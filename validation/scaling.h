@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The one factor between an image and its reference, for images whose exposure is not known.
+// The single factor between an image and its reference, for images of unknown exposure.
 //
 //   scale = sum a b / sum b^2       the least squares of  a = scale b
 //
 // a, b  samples of image and reference, of one channel or of all
 //
-// The image may be noisy and the reference is taken as it is: noise of mean 0 in a leaves the
+// The image may be noisy, and the reference is taken as exact: noise of mean 0 in a leaves the
 // scale right on average. Bright samples weigh most. An image that is k times its reference has
 // scale k.
 #pragma once
@@ -19,7 +19,7 @@ namespace aphotic {
 
 class Scaling {
   public:
-    // marks: as of compare_planes(). Samples that are marked or not finite have no say.
+    // marks: as for compare_planes(). Samples that are marked or not finite are ignored.
     void add(std::span<const float> a,
              std::span<const float> b,
              std::span<const unsigned char> marks) {
@@ -31,7 +31,7 @@ class Scaling {
         }
     }
 
-    // 0 when nothing was added that could tell.
+    // 0 if no usable sample was added.
     [[nodiscard]] double scale() const { return squares_ > 0.0 ? products_ / squares_ : 0.0; }
 
   private:

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kBoxRoom = 1e-12;  // of the coordinates: some thousand roundings
+constexpr double kBoxRoom = 1e-12;  // of the coordinates: a few thousand roundings
 
 bool is_within(double distance_m, Stretch stretch) {
     return distance_m > stretch.from_m && distance_m < stretch.to_m;
@@ -90,7 +90,7 @@ std::optional<Hit> hit_box(const Box& box, const SightLine& line, Stretch stretc
 
 }  // namespace
 
-// Eigen walks the tree with this: the nearest triangle so far, and what of the line is left.
+// Eigen's traversal uses this: the nearest triangle so far, and the rest of the line.
 struct TracedShape::Nearest {
     const SightLine& line;
     Stretch stretch;
@@ -136,7 +136,7 @@ TracedShape::Triangles TracedShape::triangles_of(const Mesh& mesh) {
         boxes.emplace_back(a_m);
         boxes.back().extend(b_m);
         boxes.back().extend(c_m);
-        // A triangle's box may be flat: room for rounding.
+        // A triangle's box may be flat: margin for rounding.
         const Vector3d room_m = Vector3d::Constant(kBoxRoom * (1.0 + a_m.norm()));
         boxes.back().min() -= room_m;
         boxes.back().max() += room_m;
@@ -163,7 +163,7 @@ TracedShape::TracedShape(const Shape& shape) {
         }
     }
     for (const AlignedBox3d& part_m : parts_m_) bounds_m_.extend(part_m);
-    // A mesh may be flat: room for rounding.
+    // A mesh may be flat: margin for rounding.
     const Vector3d room_m = Vector3d::Constant(kBoxRoom * (1.0 + bounds_m_.max().norm()));
     bounds_m_.min() -= room_m;
     bounds_m_.max() += room_m;
@@ -171,7 +171,7 @@ TracedShape::TracedShape(const Shape& shape) {
 
 std::optional<Hit> TracedShape::first_hit(const SightLine& line, Stretch stretch, int skip) const {
     if (const auto* triangles = std::get_if<Triangles>(&shape_)) {
-        // Eigen's walk asks for memory before its first box.
+        // Eigen's traversal allocates memory before its first box.
         if (!cross_box(bounds_m_.min(), bounds_m_.max(), line)) return std::nullopt;
         Nearest nearest{.line = line, .stretch = stretch, .skip = skip};
         Eigen::BVIntersect(*triangles, nearest);

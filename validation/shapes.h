@@ -10,8 +10,8 @@
 //           intersection", Journal of Graphics Tools 2(1), 21-28, 1997), found through Eigen's
 //           hierarchy of boxes
 //
-// A sphere of radius R, seen from d away along the line through its centre, is met at d - R and
-// left at d + R.
+// A sphere of radius R, seen from distance d along the line through its centre, is entered at d - R
+// and left at d + R.
 #pragma once
 
 #include "rig/rig.h"
@@ -30,7 +30,7 @@ struct SightLine {
     Eigen::Vector3d direction;  // unit
 };
 
-// A part of a sight line, its ends aside.
+// A part of a ray, without its ends.
 struct Stretch {
     double from_m;
     double to_m;
@@ -38,7 +38,7 @@ struct Stretch {
 
 struct Hit {
     double distance_m = 0.0;
-    Eigen::Vector3d normal;  // unit; which of its two ways is not told
+    Eigen::Vector3d normal;  // unit; either sign
     int face = 0;            // of a box 0 to 5, of a mesh the triangle, of a sphere 0
 };
 
@@ -46,14 +46,14 @@ class TracedShape {
   public:
     explicit TracedShape(const Shape& shape);
 
-    // The nearest point of the surface that the line meets within the stretch. skip: a face
-    // that does not count, because the line starts on it; on a sphere or a box, which are convex,
-    // every face is skipped with it. -1 for none.
+    // The nearest point where the line meets the surface within the stretch. skip: a face to
+    // ignore, because the line starts on it; on a sphere or a box, which are convex, all faces are
+    // then ignored. -1 for none.
     [[nodiscard]] std::optional<Hit> first_hit(const SightLine& line,
                                                Stretch stretch,
                                                int skip = -1) const;
 
-    // From a point to the box about the shape's nearest part, 0 within it: no more than to the
+    // From a point to the box around the shape's nearest part, 0 within it: no more than to the
     // shape itself.
     [[nodiscard]] double least_distance_m(const Eigen::Vector3d& point_m) const;
 

@@ -59,7 +59,7 @@ constexpr std::array kNumbers{NamedNumber{"promise", &StudyMeasure::promise},
                               NamedNumber{"rms_error", &StudyMeasure::rms_error},
                               NamedNumber{"max_error_on_edges", &StudyMeasure::max_error_on_edges}};
 
-// What a study is of: measures of another are not its own.
+// What a study is about: measures of another are not reused.
 Json subject_of(const Study& study) {
     return {{"rig", {{"title", study.rig_title}, {"sha256", study.rig_sha256}}},
             {"image", {{"width_px", study.width_px}, {"height_px", study.height_px}}},
@@ -79,8 +79,8 @@ struct StudyReference {
     std::vector<unsigned char> on_edge;
 };
 
-// The time of a trace is kept in its image: a study that goes on later does not trace again.
-// Nothing when the image is of something else, or not as we wrote it.
+// The time of a trace is stored in its image, so that a resumed study does not trace again. Empty
+// if the image is of something else, or not as we wrote it.
 std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
                                                          const std::string& key) {
     if (!fs::exists(file)) return std::nullopt;
@@ -122,7 +122,7 @@ StudyReference study_reference(Study& study,
     return {images.finish(), std::move(on_edge)};
 }
 
-// Renders the setting in the folder, from nothing, and takes the folder away again.
+// Renders the setting in the folder, from scratch, and removes the folder afterwards.
 StudyMeasure measure(const StudySetting& setting,
                      std::size_t index,
                      const StudyReference& reference,
@@ -282,10 +282,9 @@ Page page_of(const Study& study) {
                  .parts = {table_of(study),
                            "Errors are e = (a − b) / max(|b|, b₀): a a pixel’s signal, b the "
                            "reference’s, b₀ 10⁻⁸ of the channel’s brightest, in the worst channel "
-                           "and off the edges of beams, shadows and objects, but for the column "
-                           "of edges. Time is POV-Ray’s and the integration’s. On the Pareto "
-                           "front are the settings that no other beats in both time and largest "
-                           "error.",
+                           "and off the edges of beams, shadows and objects, except in the column "
+                           "of edges. Time is POV-Ray’s and the integration’s. A setting is on the "
+                           "Pareto front if no other beats it in both time and largest error.",
                            "Rig: SHA-256 " + study.rig_sha256}}}};
 }
 
@@ -304,8 +303,8 @@ Rig quick_rig(Rig rig) {
     };
     int least = 1;
     while (too_large(least)) ++least;
-    // A divisor of both sizes keeps the field of view exactly, but not at any price: twice as
-    // coarse is the most.
+    // A divisor of both sizes keeps the field of view exactly, but not at any price: at most twice
+    // as coarse.
     int divisor = least;
     for (int d = 2 * least; d >= least; --d) {
         if (camera.width_px % d == 0 && camera.height_px % d == 0) divisor = d;
@@ -378,7 +377,7 @@ void run_study(Study& study,
         }
         study.measures.push_back(
             measure(settings[i], i, reference, folder / "settings" / settings[i].name, hands));
-        // With those that are still to come: an interruption loses none of them.
+        // Including those still to come, so that an interruption loses none of them.
         Study so_far = study;
         so_far.measures.insert(so_far.measures.end(), kept.begin(), kept.end());
         write_text_file(file, study_json(so_far));

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The trade of accuracy for time, measured: a render by several choices of wavelengths, the wall
-// time that each takes here, and how far each is from the reference.
+// Accuracy against time, measured: renders with several choices of wavelengths, the wall time of
+// each on this machine, and the difference from the reference.
 //
 //   error  = (a - b) / max(|b|, black)       a a pixel's signal, b the reference's over the full
 //                                            spectrum, channel by channel (comparison.h)
 //   time   = POV-Ray's + integration's
 //
-// The Pareto front is made of the settings that no other beats in both time and largest error.
+// The Pareto front consists of the settings that no other beats in both time and largest error.
 //
-// A measure is given by its worst channel, off the edges unless said otherwise. One with a sample
+// A measure is that of its worst channel, off the edges unless said otherwise. One with a sample
 // that is not finite, or with none off the edges, has an infinite error, and is not on the front.
 //
-// What is measured stays in the folder, so that a study that was stopped goes on:
+// Measures stay in the folder, so that an interrupted study continues:
 //
 //   reference/image.exr     the reference, with the time of its trace
 //   study.json              the measures; settings/NAME/ while one is made
 //
-// Nothing here runs POV-Ray: whoever calls it hands in what renders a setting.
+// Nothing here runs POV-Ray: the caller supplies the function that renders a setting.
 #pragma once
 
 #include "image/output_images.h"
@@ -67,9 +67,9 @@ struct Study {
     std::vector<StudyMeasure> measures{};  // in the order of their settings
 };
 
-// The rig with an image so small that a few settings take under two minutes; itself when it is.
-// Both sizes are divided by the same whole number, by which the pixels grow. Where they do not
-// divide, the last pixels are left off: the field of view then is smaller by under a pixel.
+// The rig with an image small enough that a few settings take under two minutes; unchanged if it is
+// already. Both sizes are divided by the same whole number, by which the pixels grow. Remainders
+// are dropped: the field of view is then smaller by under a pixel.
 [[nodiscard]] Rig quick_rig(Rig rig);
 
 // The errors of a measure: of the image against the reference of the same size, planes R, G, B of
@@ -96,8 +96,8 @@ struct StudyHands {
     std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
 };
 
-// Fills in the reference and the measures of a study whose rig, versions and cores are named. The
-// folder is there, and nobody else works in it.
+// Fills in the reference and the measures of a study whose rig, versions and cores are set. The
+// folder exists, and nobody else uses it.
 void run_study(Study& study,
                const Rig& rig,
                const std::vector<StudySetting>& settings,
@@ -107,10 +107,10 @@ void run_study(Study& study,
 // study.json: all of the study. A number that is not finite is null.
 [[nodiscard]] std::string study_json(const Study& study);
 
-// The measures of the same study in such a text; none when it is of another, or not as we wrote it.
+// The measures of the same study in such a text; empty if it is another's, or not as we wrote it.
 [[nodiscard]] std::vector<StudyMeasure> measures_in(std::string_view json, const Study& study);
 
-// study.csv, one row a measure; study.json; study.html, a page with a table and a plot.
+// study.csv, one row per measure; study.json; study.html, a page with a table and a plot.
 void write_study(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace aphotic

@@ -33,7 +33,7 @@ double angle_from_to(const Vector3d& a, const Vector3d& b) {
 
 // ---- Cones
 
-// The integral of cos^n over a cone; narrow ones leave next to nothing of 1 - cos^n.
+// The integral of cos^n over a cone; narrow ones leave almost nothing of 1 - cos^n.
 double flux_of_sharp(double half_angle_rad, double n) {
     const double sine2 = std::pow(std::sin(half_angle_rad), 2);
     const double power = n + 1.0;
@@ -89,7 +89,7 @@ struct Angles {
     double horizontal_rad;
 };
 
-// Up from the plane across an axis, and round it.
+// Latitude above the plane across an axis, and longitude about it.
 double elevation(const Vector3d& w, const Vector3d& axis) {
     return std::atan2(w.dot(axis), w.cross(axis).norm());
 }
@@ -119,7 +119,7 @@ double intensity_of(const BeamTable& table, const Vector3d& lamp) {
     const auto vertical = place_among(table.vertical_rad, angles.vertical_rad);
     if (!vertical) return 0.0;
     if (table.horizontal_rad.size() == 1) return value_along(table, 0, *vertical);
-    // Of type C they go all the way round, whichever way 360 degrees were rounded.
+    // For type C they make a full turn, however 360 degrees was rounded.
     const double around_rad = table.angles == TableAngles::TypeC
                                   ? std::min(angles.horizontal_rad, table.horizontal_rad.back())
                                   : angles.horizontal_rad;
@@ -130,8 +130,8 @@ double intensity_of(const BeamTable& table, const Vector3d& lamp) {
                      horizontal->share);
 }
 
-// A cell of the angle on which the solid angle depends, and of the other, in which I is straight
-// and so worth the mean of its ends.
+// A cell in the angle that determines the solid angle, and in the other, in which I is straight and
+// so contributes the mean of its ends.
 double integral_of(const BeamTable& table) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     const bool is_by_horizontal = table.angles == TableAngles::TypeB;
@@ -170,9 +170,8 @@ struct Heights {
     double to_m;
 };
 
-// A ray that leaves the lens at a height h with the slope m has come to it with the slope m + h/f,
-// from h - s (m + h/f) of the rectangle's plane. The heights from which that is within the
-// rectangle's side.
+// A ray that leaves the lens at height h with slope m came to it with slope m + h/f, from h - s (m
+// + h/f) of the rectangle's plane. The heights for which that is within the rectangle's side.
 Heights lit_heights(const BeamOptics& optics, double side_m, double slope) {
     const double per_height = 1.0 - optics.distance_m / optics.focal_length_m;
     const double aside_m = optics.distance_m * slope;
@@ -186,7 +185,7 @@ Heights lit_heights(const BeamOptics& optics, double side_m, double slope) {
             .to_m = std::clamp(std::max(a_m, b_m), -radius_m, radius_m)};
 }
 
-// With heights across as R sin(t), a strip of the lens is R cos(t) to both sides.
+// With heights across as R sin(t), a strip of the lens extends R cos(t) to both sides.
 double intensity_of(const BeamOptics& optics, const Vector3d& lamp) {
     if (!(lamp.z() > 0.0)) return 0.0;
     const double radius_m = 0.5 * optics.aperture_m;
@@ -231,8 +230,8 @@ double flux_through(const Heights& p, const Heights& q) {
         std::atan(q.to_m));
 }
 
-// A quarter of the lens, cut where a point looks past the rectangle's sides: near to a rectangle
-// that is a step all but in name.
+// A quarter of the lens, cut where a point looks past the rectangle's sides: close to a rectangle
+// that is almost a step.
 double integral_of(const BeamOptics& optics) {
     using Adaptive = boost::math::quadrature::gauss_kronrod<double, 15>;
     constexpr unsigned kDepth = 6;  // 64 parts of a piece: absurd lenses stay a matter of seconds
@@ -244,7 +243,7 @@ double integral_of(const BeamOptics& optics) {
         const double middle = per_height * height_m / s;
         return Heights{middle - 0.5 * side_m / s, middle + 0.5 * side_m / s};
     };
-    // In parts of an interval: Boost compares an error that it has not multiplied by its length.
+    // In parts of an interval: Boost compares an error that is not multiplied by its length.
     const auto integrate = [&](const auto& f, double from, double to) {
         const double length = to - from;
         const auto part = [&](double u) { return f(from + length * u); };
@@ -270,14 +269,14 @@ double integral_of(const BeamOptics& optics) {
 
 // ---- Windows
 
-// Of one face, from the index and cosine in front to those behind it: what it reflects, and what it
-// lets through for each unit of the cosine in front.
+// For one face, from the index and cosine in front to those behind it: its reflectance, and its
+// transmittance per unit of the cosine in front.
 struct Face {
     double reflected;
     double let_through_by_cosine;
 };
 
-// One polarisation, s; the other is that of the cosines exchanged.
+// One polarisation, s; the other is that with the cosines exchanged.
 Face fresnel(double index, double cosine, double index_behind, double cosine_behind) {
     const double sum = index * cosine + index_behind * cosine_behind;
     return {.reflected = square((index * cosine - index_behind * cosine_behind) / sum),
@@ -297,7 +296,7 @@ double window_gain(const BeamWindow& window, double sine) {
     const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
     const double in_glass = std::sqrt(1.0 - square(sine / g));
     const double in_water = std::sqrt(1.0 - square(sine / n));
-    // To and fro between the faces: 1 + R R' + (R R')^2 ...
+    // Reflections between the faces: 1 + R R' + (R R')^2 ...
     const auto both = [&](const Face& front, const Face& back) {
         return front.let_through_by_cosine * back.let_through_by_cosine * in_glass /
                (1.0 - front.reflected * back.reflected);
@@ -400,7 +399,7 @@ double TracedBeam::intensity(const Vector3d& towards) const {
 
 // ---- Edges
 
-// Light in air goes as far as the plane across the axis.
+// Light in air reaches the plane across the axis.
 bool TracedBeam::reaches_the_plane() const {
     if (const auto* table = std::get_if<BeamTable>(&beam_.pattern)) {
         const auto ends_there = [](const std::vector<double>& angles_rad) {
@@ -439,7 +438,7 @@ void TracedBeam::place_edges() {
     if (!table) {
         for (const Cone& cone : beam_.cones) {
             // A cone of 90 degrees ends where its cosine does: there is no step, unless it falls
-            // more steeply than that. Nor is there one where there is no light.
+            // more steeply. Nor is there one where there is no light.
             constexpr double kRounding = 1e-9;
             const bool ends_before =
                 cone.half_angle_rad < kQuarterTurn - kRounding || cone.exponent < 1.0;
@@ -509,7 +508,8 @@ void TracedBeam::place_rectangle(const std::array<Cap, 4>& sides,
     }
 }
 
-// Beyond the window's last angle, what is on it. Outwards angles in air grow faster and faster.
+// Past the window's last angle, the value at that angle. Angles in air grow faster and faster
+// outwards.
 TracedBeam::Aim TracedBeam::in_air(const Aim& in_water) const {
     const double n = beam_.window->water_index;
     const double off_axis = angle_from_to(in_water.towards, axis_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam as the reference sees it: what the rig says of it (the structs of rig/beam/beam.h), and
-// none of rig/'s functions.
+// A beam in the reference: from the rig's description (the structs of rig/beam/beam.h), and none of
+// rig/'s functions.
 //
 //   I(w)   intensity in the direction w of the sled's frame, per unit of the lamp's power  [1/sr]
 //
@@ -30,8 +30,8 @@
 
 namespace aphotic {
 
-// Across and along an emitter or a pattern, unit vectors: the way forward as it lies in the plane
-// across the axis, or down within a millionth of a radian of fore and aft, and what is to its right
+// Across and along an emitter or a pattern, unit vectors: forward projected on the plane across the
+// axis, or down within a millionth of a radian of fore and aft, and the direction to its right
 // (docs/reference/rig.md).
 struct StrobeSides {
     Eigen::Vector3d across;
@@ -44,28 +44,27 @@ class TracedBeam {
     // With the strobe's axis, a unit vector.
     TracedBeam(const Beam& beam, const Eigen::Vector3d& axis);
 
-    // Of a direction of any length but 0.
+    // For a direction of any length but 0.
     [[nodiscard]] double intensity(const Eigen::Vector3d& towards) const;
 
     // Adds the angles x, from -pi to pi, at which cos(x) e + sin(x) u crosses a circle about the
-    // axis or an edge where I is not smooth; those of a pattern behind a window are left out. e and
+    // axis or an edge where I is not smooth; those of a pattern behind a window are omitted. e and
     // u: unit vectors, one across the other.
     void add_crossings(const Eigen::Vector3d& e,
                        const Eigen::Vector3d& u,
                        std::vector<double>& x_rad) const;
 
-    // Whether there may be light behind the plane across the axis: of a table alone.
+    // Whether there may be light behind the plane across the axis: only for a table.
     [[nodiscard]] bool shines_backwards() const { return shines_backwards_; }
 
     // Whether either direction is within an angle of an edge, where I steps or falls as steeply as
-    // a step, or one lies on its far side. What is smooth has none.
+    // a step, or one is on its far side. Smooth beams have none.
     [[nodiscard]] bool is_on_edge(const std::array<Eigen::Vector3d, 2>& towards,
                                   double within_rad) const;
 
-    // The n of the cos^n that has I's slope and bend where they are largest, between its edges,
-    // seen from a lamp that moves across the axis. The largest exponent of sharp cones; of all
-    // others an estimate, by differences over a degree, with I for no less than kDimmest of the
-    // largest.
+    // The n of the cos^n with I's largest slope and curvature between its edges, seen from a lamp
+    // that moves across the axis. The largest exponent of sharp cones; for all others an estimate,
+    // by differences over a degree, with I limited to at least kDimmest of the largest.
     static constexpr double kDimmest = 0.1;
     [[nodiscard]] double steepness() const;
 
@@ -99,7 +98,7 @@ class TracedBeam {
     [[nodiscard]] Eigen::Vector3d in_lamp(const Eigen::Vector3d& towards) const;
     [[nodiscard]] double steepness_at(const Eigen::Vector3d& towards, double most) const;
 
-    // A direction, and what the window makes of an angle about it.
+    // A direction, and the window's effect on an angle about it.
     struct Aim {
         Eigen::Vector3d towards;
         double within_rad;
@@ -109,7 +108,7 @@ class TracedBeam {
 
     Beam beam_;
     Eigen::Vector3d axis_;
-    Eigen::Vector3d along_;  // of the pattern, turned
+    Eigen::Vector3d along_;  // of the pattern, rotated
     Eigen::Vector3d across_;
     double scale_ = 1.0;  // of the pattern: 1 / its flux
     std::vector<TracedCone> cones_;

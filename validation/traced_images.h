@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The reference tracer's images in a folder, with the names of a render's: image.exr, and
-// spectral.exr with the planes that the tracer was asked for. They say that it made them.
+// spectral.exr with the tracer's planes. Their metadata names the tracer.
 #pragma once
 
 #include "image/output_images.h"
@@ -24,7 +24,7 @@ namespace aphotic {
                                               const std::optional<ManifestModel>& model,
                                               const std::function<void(double)>& progress);
 
-// The planes R, G, B of a tracer that was asked for signals alone.
+// The planes R, G, B of a tracer for signals only.
 [[nodiscard]] std::vector<double> trace_signals(const Tracer& tracer,
                                                 const std::function<void(double)>& progress);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's own lens: which way a point of the image looks, for a calibration's numbers
-// (rig/camera/lens_model.h has the formula, and no line in common with this). The distance from the
-// axis is found by bracketing, the decentring by going round: what it takes off the point depends
-// on the answer before, and changes less each time.
+// The reference's own lens: the direction in which an image point looks, for a calibration's
+// numbers (rig/camera/lens_model.h has the formula, and no code in common). The distance from the
+// axis is found by bracketing, the decentring by iteration: its correction depends on the previous
+// result, and changes less each time.
 #pragma once
 
 #include "rig/camera/lens_model.h"
@@ -21,8 +21,8 @@ class TracedLens {
 
     explicit TracedLens(const LensModel& lens);
 
-    // In the sled's frame (x forward, y starboard, z down), with z = 1; none beyond the lens's
-    // reach.
+    // In the sled's frame (x forward, y starboard, z down), with z = 1; empty outside the lens's
+    // range.
     [[nodiscard]] std::optional<Direction> direction(double column, double row) const;
 
   private:
@@ -34,8 +34,8 @@ class TracedLens {
 };
 
 // The reference's own vignetting: the factor of a pixel's signal, for the numbers of
-// rig/camera/vignetting.h, of which it has no formula.
-// sight: which way the point (column, row) looks in air, of any length. 1 without vignetting.
+// rig/camera/vignetting.h, whose formula it does not use. sight: the direction in air of the point
+// (column, row), of any length. 1 without vignetting.
 [[nodiscard]] double traced_vignetting(const Camera& camera,
                                        double column,
                                        double row,

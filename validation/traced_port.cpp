@@ -30,7 +30,7 @@ TracedRay through_tilted_faces(const PortWindow& port,
                                const WideVector& in_air,
                                double glass_index,
                                double water_index) {
-    // Turned so that the normal is z.
+    // Rotated so that the normal is z.
     const Eigen::Quaternion<long double> turn = Eigen::Quaternion<long double>::FromTwoVectors(
         port.normal.cast<long double>(), WideVector::UnitZ());
     const WideVector turned = turn * in_air;

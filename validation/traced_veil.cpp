@@ -22,7 +22,7 @@ constexpr std::size_t kPoints = 15;
 struct RulePoint {
     double at;  // from -1 to 1
     double width;
-    double width_of_gauss;  // 0 where Kronrod alone has a point
+    double width_of_gauss;  // 0 where only Kronrod has a point
 };
 
 std::array<RulePoint, kPoints> make_rule() {

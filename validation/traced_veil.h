@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil as the reference takes it: light of a strobe that the water turns into the camera's ray,
+// The veil in the reference: a strobe's light that the water scatters into the camera's ray,
 //
 //   A = Phi power sum_i b_i int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt,     psi >= kVeilCut
 //
-// from t = 0 where the ray enters the water to what it meets; the letters are light/veil.h's, of
-// which it has no formula. With x the angle at the lamp between its nearest point of the ray, h
+// from t = 0 where the ray enters the water to what it meets; the letters are light/veil.h's, whose
+// formulas it does not use. With x the angle at the lamp between its nearest point of the ray, h
 // away at t = t_0, and the point at t,
 //
 //   dt / d^2 = dx / h,    t + d = t_0 + h tan(45 degrees + x/2),    psi = x + 90 degrees
 //
 // Over x, from edge to edge of the beam and of a table's rows, panels of Gauss and Kronrod are
 // halved until the 15 and the 7 points of each agree to kVeilTolerance of the whole, for each
-// scatterer and for the least and the largest K. Those in between lie between them: the points
+// scatterer and for the least and the largest K. Those between are bracketed by them: the points
 // serve every wavelength.
 //
-// An emitter of a size is kVeilLamps x kVeilLamps lamps by Gauss's rule. A lamp on the ray is
-// kVeilBeside_m beside it, where its light has an end. Shadows of objects are left out.
+// An emitter with a size is kVeilLamps x kVeilLamps lamps by Gauss's rule. A lamp on the ray is
+// treated as kVeilBeside_m beside it, where its light is finite. Shadows of objects are omitted.
 #pragma once
 
 #include "rig/rig.h"
@@ -34,7 +34,7 @@ inline constexpr double kVeilTolerance = 1e-10;
 inline constexpr unsigned kVeilLamps = 4;
 inline constexpr double kVeilBeside_m = 1e-6;
 
-// Of one strobe: A = Phi power sum_n sum_i b_i light[i][n] exp(-K path_m[n]).
+// For one strobe: A = Phi power sum_n sum_i b_i light[i][n] exp(-K path_m[n]).
 struct VeilPoints {
     std::vector<double> path_m;              // t + d
     std::vector<std::vector<double>> light;  // by scatterer  [1/(m sr)]
@@ -61,7 +61,7 @@ class TracedVeil {
                const Losses& losses,
                VeilPoints& points) const;
 
-    // A of all strobes.
+    // A for all strobes.
     [[nodiscard]] double radiance(const VeilRay& ray, double lambda_nm) const;
 
   private:

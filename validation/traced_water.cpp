@@ -24,7 +24,7 @@ double value_of(const MolecularScattering& phase, double psi_rad) {
     return 3.0 * (1.0 + delta + (1.0 - delta) * cosine * cosine) / (8.0 * pi * (2.0 + delta));
 }
 
-// The first term of the formula as printed, of d and s^2 = d (n - 1)^2 3/4.
+// The first term of the formula as printed, with d and s^2 = d (n - 1)^2 3/4.
 template <typename Real>
 Real forand_peak(Real d, Real nu, Real s2) {
     const Real to_nu = std::pow(d, nu);
@@ -59,7 +59,7 @@ double value_of(const FournierForand& phase, double psi_rad) {
                       (3.0 * cosine * cosine - 1.0);
 }
 
-// As measured, not scaled: a straight line on log-log paper where that can be, on plain paper else.
+// As measured, not scaled: a straight line in log-log if possible, otherwise linear.
 double value_of(const PhaseTable& table, double psi_rad) {
     const auto& angles = table.angle_rad;
     std::size_t i = 0;
@@ -78,7 +78,7 @@ double unscaled(const PhaseFunction& phase, double psi_rad) {
     return std::visit([&](const auto& kind) { return value_of(kind, psi_rad); }, phase.kind);
 }
 
-// 2 pi int p sin dpsi, over the logarithm of the angle: forward peaks are powers of it.
+// 2 pi int p sin dpsi, over the logarithm of the angle, since forward peaks are powers of it.
 double share_between(const PhaseFunction& phase, double from_rad, double to_rad) {
     using Adaptive = boost::math::quadrature::gauss_kronrod<double, 31>;
     constexpr unsigned kDepth = 12;

@@ -51,7 +51,7 @@ double bend_of_light(double k, double n, bool is_floor, double phong_size) {
     return diffuse + 2.0 * phong_size + 2.0 * flank * (k + (n + 3.0));
 }
 
-// Of an emitter, in shares of its sides from its middle.
+// For an emitter, in shares of its sides from its middle.
 constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
     {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
 
@@ -106,9 +106,10 @@ void Tracer::place_lamps() {
     place_edges();
 }
 
-// So that the midpoint rule, which errs by h^2/24 of the second derivative, holds kEmitterError on
-// what is d away: at every plane, and in the signals by the share that each wavelength has in them.
-// That of the shortest way counts: on longer ones what is attenuated more has less of a share.
+// Small enough for the midpoint rule, whose error is h^2/24 of the second derivative, to meet
+// kEmitterError at distance d: at every plane, and in the signals by each wavelength's share in
+// them. The shortest path's share counts: on longer paths, wavelengths that are attenuated more
+// have less.
 double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     double phong_size = 0.0;
     for (const Surface& surface : surfaces_) {
@@ -161,9 +162,8 @@ EmitterLamps Tracer::lamps_of(std::size_t s) const {
                              .along = along_side(options_.lamps_along, strobe.emitter->along_m)};
     if (static_cast<double>(lamps.across) * lamps.along > kMostLamps) {
         throw InputError(
-            "strobe '{}': its emitter takes {} x {} lamps to trace; "
-            "allowed: {:.0f}. It is large for its distance to the floor or to an "
-            "object, or for its water",
+            "strobe '{}': its emitter needs {} x {} lamps to trace; allowed: {:.0f}. It is too "
+            "large for its distance to the floor or an object, or for its water",
             strobe.name,
             lamps.across,
             lamps.along,
@@ -172,8 +172,8 @@ EmitterLamps Tracer::lamps_of(std::size_t s) const {
     return lamps;
 }
 
-// Given lamps are points, each with its own edges and shadows; else it is the whole emitter, of
-// which the lamps are but a sample.
+// Given lamps are points, each with its own edges and shadows; otherwise the whole emitter is
+// meant, of which the lamps are only a sample.
 void Tracer::place_edges() {
     if (!options_.rendered_lamps.empty()) {
         rim_lamps_ = lamps_;
@@ -201,15 +201,15 @@ void Tracer::place_edges() {
     }
 }
 
-// Of glass and water, relative to air; without a port nothing is bent.
+// Of glass and water, relative to air; without a port nothing is refracted.
 Tracer::Index Tracer::index_at(double lambda_nm) const {
     if (!rig_.camera.port) return {.glass = 1.0, .water = 1.0};
     return {.glass = rig_.camera.port->glass.index(lambda_nm),
             .water = seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
 }
 
-// The lights of this rig: paths from the shortest to the longest that the image sees,
-// with some room on both sides.
+// The lights of this rig: paths from the shortest to the longest that the image sees, with a margin
+// on both sides.
 std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
     constexpr int kSteps = 16;
     constexpr double kRoom = 1.05;
@@ -254,8 +254,8 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                                     rig_.camera.height_px * j / static_cast<double>(kSteps));
         }
     }
-    // Towards the horizon paths grow without end, and objects lie between the grid's points: ask
-    // every pixel.
+    // Towards the horizon paths grow without end, and objects lie between the grid's points, so
+    // every pixel is used.
     const bool is_smooth = is_all_floor && shapes_.empty();
     for (int row = 0; row < rig_.camera.height_px && !is_smooth; ++row) {
         for (int column = 0; column < rig_.camera.width_px; ++column) {
@@ -270,7 +270,7 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                          veil_in_view(family, is_all_floor));
 }
 
-// From where a sight enters the water.
+// From where a ray enters the water.
 double Tracer::nearest_lamp_m() const {
     constexpr int kSteps = 16;
     const Index index = index_at(0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm));
@@ -294,8 +294,8 @@ double Tracer::nearest_lamp_m() const {
     return nearest_m;
 }
 
-// From the lamp nearest to where any sight enters the water; as far as the floor's light goes, or
-// as light goes at all where the image sees the horizon.
+// From the lamp nearest to where any ray enters the water; as far as the floor's light goes, or as
+// far as light goes at all if the image sees the horizon.
 VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) const {
     constexpr double kRoom = 1.05;
     constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
@@ -390,7 +390,7 @@ double Tracer::widest_pixel_rad() const {
     return widest_rad;
 }
 
-// What the point (column, row) of the image looks at; false when it is nothing.
+// What the point (column, row) of the image sees; false if nothing.
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const std::optional<WideVector> in_air = sight(column, row);
     return in_air && look_along(*in_air, index, view);
@@ -414,8 +414,8 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
     const WideVector& wide = ray.direction;
     const Vector3d& origin_m = ray.origin_m;
     Vector3d direction = wide.cast<double>();
-    // Near the horizon the ray and the vertical are all but perpendicular: their product is what is
-    // left of a difference, and of doubles few digits would be.
+    // Near the horizon the ray and the vertical are nearly perpendicular: their product is the
+    // remainder of a difference, of which doubles keep few digits.
     const long double approach = wide.dot(exact_down_) / wide.norm();
     const double depth_m = height_m(origin_m);
     const bool meets_floor = approach > 0.0L && depth_m > 0.0;
@@ -443,8 +443,8 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
     return true;
 }
 
-// Something stands on this stretch of the way from the point to the lamp. What a face hides by
-// itself is told by its normal.
+// Whether something blocks this stretch of the way from the point to the lamp. A face that turns
+// away is detected by its normal.
 bool Tracer::is_blocked(const Lamp& lamp, const View& view, Stretch stretch) const {
     const Vector3d to_lamp = lamp.position_m - view.point_m;
     const double d = to_lamp.norm();
@@ -462,7 +462,7 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const double d2 = from_lamp.squaredNorm();
     const double d = std::sqrt(d2);
-    // On the floor by the lamp's height, of which grazing light loses no digits.
+    // On the floor from the lamp's height, which keeps its digits for grazing light.
     const double cos_incidence =
         (view.surface == 0 ? height_m(lamp.position_m) : -from_lamp.dot(view.normal)) / d;
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
@@ -474,7 +474,7 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Surface& surface = surfaces_[view.surface];
     if (surface.phong > 0.0) {
         const double alignment = -view.mirrored.dot(from_lamp) / d;
-        if (alignment > 0.0) {  // else none, where phong_size is 0 too
+        if (alignment > 0.0) {  // otherwise none, even if phong_size is 0
             found.specular = arriving * surface.phong * std::pow(alignment, surface.phong_size);
         }
     }
@@ -487,7 +487,7 @@ WavelengthRange Tracer::traced_range() const {
     return {.first_nm = *first, .last_nm = *last};
 }
 
-// What its sight shows, at every wavelength.
+// What its ray shows, at every wavelength.
 void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd& radiance) const {
     View view;
     if (!rig_.camera.port) {
@@ -509,7 +509,7 @@ void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd&
         return;
     }
     if (lambda_nm_.empty()) return;
-    // Told once, for every wavelength has its own ray.
+    // Computed for every wavelength, each with its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     if (veil_) {
         radiance += veil_->along([&](std::size_t j) {
@@ -528,7 +528,7 @@ void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd&
     }
 }
 
-// The radiance of one pixel at every wavelength, less what the lens takes off.
+// The radiance of one pixel at every wavelength, with vignetting.
 void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
     radiance.setZero();
     const std::optional<WideVector> in_air = sight(column + 0.5, row + 0.5);
@@ -552,13 +552,13 @@ bool Tracer::is_on_beam_edge(double column,
     for (std::size_t e = 0; e < indices.size(); ++e) {
         if (!look(column, row, indices.at(e), views.at(e))) return false;
     }
-    // A pixel covers more of a floor that is seen aslant.
+    // A pixel covers more of a floor seen obliquely.
     constexpr double kAslant = 1.5;
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
         std::array<Vector3d, 3> paths_m;
         const double sight_rad =
             (rig_.camera.lens ? kEdgeThroughLensRad : 0.0) + within_px * pixel_rad_;
-        // How far a strobe's lamps spread about the edge, at least.
+        // The least spread of a strobe's lamps about the edge.
         double spread_rad = sight_error_rad_;
         for (std::size_t e = 0; e < indices.size(); ++e) {
             paths_m.at(e) = views.at(e).point_m - apex.position_m;
@@ -567,8 +567,8 @@ bool Tracer::is_on_beam_edge(double column,
                                    kAslant * sight_rad * views.at(e).distance_m / d_m,
                                    std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
-        // Dispersion's way is bent: each half leaves its own chord by a quarter of what the middle
-        // leaves that of the whole, and twice that is room.
+        // Dispersion's path is curved: each half leaves its own chord by a quarter of what the
+        // middle leaves that of the whole, and twice that is margin.
         const Vector3d first = paths_m[0].normalized();
         const Vector3d last = paths_m[2].normalized();
         const Vector3d off = paths_m[1].normalized() - 0.5 * (first + last);
@@ -583,7 +583,8 @@ bool Tracer::is_on_beam_edge(double column,
     });
 }
 
-// Its beam aside: a lamp before the surface, which is before the lamp, with nothing between.
+// Ignoring its beam: a lamp in front of the surface, which is in front of the lamp, with nothing
+// between.
 bool Tracer::shines_on(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const bool is_ahead = from_lamp.dot(rig_.strobes[lamp.strobe].axis) > 0.0;
@@ -598,7 +599,7 @@ bool Tracer::shows_the_same(const View& a, const View& b) const {
            });
 }
 
-// For what the pixel itself shows, whatever its neighbours do.
+// For what the pixel itself shows, whatever its neighbours show.
 bool Tracer::is_uncertain(const View& view) const {
     const bool is_of_mesh = view.surface > 0 && shapes_[view.surface - 1].is_mesh();
     std::vector<int> lit(rig_.strobes.size(), 0);
@@ -621,7 +622,7 @@ bool Tracer::is_uncertain(const View& view) const {
            std::ranges::any_of(rim_lamps_, looks_uncertain);
 }
 
-// The camera's ray, or a lamp's to what it shows, comes this close to an object.
+// How close the camera's ray, or a lamp's to what it shows, comes to an object.
 bool Tracer::is_near_an_object(const View& view, double reach_m) const {
     const Vector3d pupil_m = Vector3d::Zero();
     if (view.surface > 0) return true;
@@ -644,7 +645,7 @@ bool Tracer::is_near_an_object(const View& view, double reach_m) const {
     return false;
 }
 
-// The logarithm of the change of light, each lamp's by its share of all.
+// The logarithm of the change of light, each lamp's weighted by its share.
 double Tracer::change_between(const View& from, const View& to, double lambda_nm) const {
     const double K_per_m = water_.loss_per_m(lambda_nm);
     const Surface& surface = surfaces_[from.surface];
@@ -666,8 +667,8 @@ double Tracer::change_between(const View& from, const View& to, double lambda_nm
     return all > 0.0 ? std::log1p(change / all) : std::numeric_limits<double>::infinity();
 }
 
-// All that the point of the image shows in the range, and what lies so many pixels about it, is
-// floor that no object hides from camera or lamp.
+// Everything that the image point shows in the range, and within so many pixels of it, is floor
+// that no object hides from camera or lamp.
 bool Tracer::is_clear_of_objects(double column,
                                  double row,
                                  WavelengthRange range,
@@ -685,8 +686,8 @@ bool Tracer::is_clear_of_objects(double column,
     return !is_near_an_object(view, reach_m);
 }
 
-// A lamp's light is so near its end on a rounded thing, or its beam so steep, that the error of
-// POV-Ray's rays tells.
+// A lamp's light is so near its end on a rounded object, or its beam so steep, that the error of
+// POV-Ray's rays matters.
 bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
     const double reach_px = sight_error_rad_ / pixel_rad_;
     const Index index = index_at(lambda_nm);

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference: a tracer of our own that shares with the POV-Ray way the rig and the spectra,
-// and no line of geometry or light.
+// The reference: our own tracer, which shares the rig and the spectra with the POV-Ray path, but no
+// geometry or light code.
 //
-// For every pixel and every wavelength of its grid: the camera's ray, through the port where
-// there is one (each wavelength bent by its own indices), to the floor or to the object before it
-// (shapes.h); from there every strobe, every lamp of its emitter that no object hides:
+// For every pixel and every wavelength of its grid: the camera's ray, through the port if there is
+// one (each wavelength refracted by its own indices), to the floor or to the object before it
+// (shapes.h); from there to every strobe and every lamp of its emitter that no object hides:
 //
 //   L(lambda) = sum  Phi power I(-l) / (N d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size) / pi  exp(-K (d + r))
 //   S_c       = sum_j w_cj L(lambda_j)
 //
-// and, of water that scatters, the veil before it, or before the horizon (traced_veil.h).
+// plus, in water that scatters, the veil before it, or before the horizon (traced_veil.h).
 //
 // I      the beam's intensity (traced_beam.h)              d  lamp to surface [m]
 // i      angle of incidence at the surface                 r  surface to port or pupil [m]
 // m      the camera's ray mirrored at the surface          l  from the surface to the lamp
 // N      lamps of the emitter
 //
-// Double precision, but for heights over the floor and the angle to the horizon, which are small
-// differences at the extremes: these are taken in long double. The spectral grid is exact to
-// kSpectralError of a channel's signal (full_spectrum.h). An emitter of a size is as many
-// equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
-// wavelength and in every signal (of a beam with another falloff than cos^n, by an estimate:
+// Double precision, except for heights above the floor and the angle to the horizon, which are
+// small differences at the extremes and computed in long double. The spectral grid is exact to
+// kSpectralError of a channel's signal (full_spectrum.h). An emitter with a size is as many equal
+// lamps as keep the smooth part of its light to kEmitterError of the value, at every plane's
+// wavelength and in every signal (for a beam whose falloff is not cos^n, by an estimate:
 // TracedBeam::steepness()); a beam's edge is a staircase with as many steps. Every term of a sum
-// has the same sign, so a sum of n terms is right to n 1.1e-16.
+// has the same sign, so a sum of n terms is accurate to n 1.1e-16.
 #pragma once
 
 #include "rig/rig.h"
@@ -54,27 +54,27 @@ inline constexpr double kEmitterError = 2e-5;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
-// Of a calibrated lens, whose rays POV-Ray interpolates to 2e-6 (kRayErrorRad of
-// scene_gen/camera_rays.h) between those of a mesh in single precision, 2e-7 more. Of the
-// angle of view: at a lamp that is nearer to the floor it is as many times as large.
+// For a calibrated lens, whose rays POV-Ray interpolates to 2e-6 (kRayErrorRad of
+// scene_gen/camera_rays.h) in a mesh in single precision, 2e-7 more. In angle of view: at a lamp
+// closer to the floor it is larger in proportion.
 inline constexpr double kEdgeThroughLensRad = 2.2e-6;
-// Of an object's outline, its faces and its shadows: where the image shifted by so much shows
-// another face or other lamps. POV-Ray keeps meshes in single precision, 0.1 um at 2 m.
+// For an object's outline, its faces and its shadows: where the image shifted by so much shows
+// another face or is lit by other lamps. POV-Ray stores meshes in single precision, 0.1 um at 2 m.
 inline constexpr double kEdgePx = 2e-3;
-// POV-Ray passes over blockers so close to the lit point or to the lamp (SHADOW_TOLERANCE, 1e-3 of
-// its units, ours are metres; and a bit for rounding). Behind such a one it may also miss a farther
+// POV-Ray ignores blockers this close to the lit point or to the lamp (SHADOW_TOLERANCE, 1e-3 of
+// its units, ours are metres; plus some rounding). Behind such a blocker it may also miss a farther
 // part of the same mesh.
 inline constexpr double kNoShadowWithin_m = 1.01e-3;
-// A mesh's face that a lamp grazes: below this cosine POV-Ray's single-precision normals tell.
+// A mesh's face that a lamp grazes: below this cosine POV-Ray's single-precision normals matter.
 inline constexpr double kGrazing = 1e-3;
 // Where the rounding of a port's index or of a lens's rays changes the light on an object by more
-// than this, a half of what the half floats leave of validation.h's bound.
+// than this, half of what the half floats leave of validation.h's bound.
 inline constexpr double kRoundingChange = 5e-5;
-// On an object behind a port, dispersion may change the light by this much (its logarithm) and
-// no more, which is what a plan allows for (kObjectTilt of scene_gen/light_paths.h).
+// On an object behind a port, dispersion may change the light by this much (its logarithm) and no
+// more, as a plan assumes (kObjectTilt of scene_gen/light_paths.h).
 inline constexpr double kSteepest = 0.05;
 
-// Equal lamps that stand for an emitter, in even rows.
+// Equal lamps that represent an emitter, in even rows.
 struct EmitterLamps {
     int across = 1;
     int along = 1;
@@ -84,11 +84,11 @@ struct TraceOptions {
     bool signals = true;            // R, G, B over the full spectrum
     std::vector<double> planes_nm;  // and the radiance at these wavelengths
     int threads = 1;                // changes no bit
-    // Lamps across and along every emitter that has a size; 0: as kEmitterError asks.
+    // Lamps across and along every emitter with a size; 0: as kEmitterError requires.
     int lamps_across = 0;
     int lamps_along = 0;
-    // By strobe, those of another renderer, to trace its very image: then edges are those of each
-    // lamp by itself, and no emitter has a penumbra. Empty: as above.
+    // By strobe, the lamps of another renderer, to trace exactly its image: edges are then those of
+    // each lamp, and no emitter has a penumbra. Empty: as above.
     std::vector<EmitterLamps> rendered_lamps{};
 };
 
@@ -98,14 +98,14 @@ class Tracer {
   public:
     Tracer(const Rig& rig, const TraceOptions& options);
 
-    // The planes of these rows, one after another: R, G, B if asked for, then one a wavelength.
-    // Memory is these planes and one spectrum a thread, whatever the grid.
+    // The planes of these rows, one after another: R, G, B if requested, then one per wavelength.
+    // Memory is these planes and one spectrum per thread, whatever the grid.
     [[nodiscard]] std::vector<double> rows(int first_row, int count) const;
 
-    // The same of these pixels alone, numbered row by row: the planes one after another.
+    // The same for these pixels only, numbered row by row: the planes one after another.
     [[nodiscard]] std::vector<double> pixels(std::span<const std::size_t> which) const;
 
-    // Lamps that stand for the strobe's emitter.
+    // The lamps of the strobe's emitter.
     [[nodiscard]] EmitterLamps lamps(std::size_t strobe) const { return grids_[strobe]; }
 
     [[nodiscard]] std::size_t planes() const;
@@ -126,15 +126,14 @@ class Tracer {
     // within_px: also pixels about so many from an edge, for images that blur it.
     [[nodiscard]] std::vector<unsigned char> on_edges(WavelengthRange range,
                                                       double within_px = 0.0) const;
-    // The same of these pixels alone.
+    // The same for these pixels only.
     [[nodiscard]] std::vector<unsigned char> on_edges_of(std::span<const std::size_t> which,
                                                          WavelengthRange range) const;
 
-    // Where a point of the image looks at a wavelength, up to what it sees; none where it sees
-    // nothing.
+    // The ray of an image point at a wavelength, up to what it sees; empty if it sees nothing.
     [[nodiscard]] std::optional<VeilRay> ray(double column, double row, double lambda_nm) const;
 
-    // What a point of the image shows at a wavelength; none where it sees nothing.
+    // What an image point shows at a wavelength; empty if it sees nothing.
     struct Seen {
         Eigen::Vector3d point_m;
         Eigen::Vector3d normal;   // unit, towards the camera
@@ -142,7 +141,7 @@ class Tracer {
     };
     [[nodiscard]] std::optional<Seen> seen(double column, double row, double lambda_nm) const;
 
-    // Of the full spectrum; 0 without signals.
+    // For the full spectrum; 0 without signals.
     [[nodiscard]] std::size_t grid_size() const { return signal_nodes_; }
 
     [[nodiscard]] const Rig& rig() const { return rig_; }
@@ -153,19 +152,19 @@ class Tracer {
         std::size_t strobe;
         Eigen::Vector3d position_m;
     };
-    // Where a strobe's beam has its edges from, and how far its lamps lie about it.
+    // The points from which a strobe's beam has its edges, and how far its lamps spread about it.
     struct Apex {
         std::size_t strobe;
         Eigen::Vector3d position_m;
         double reach_m;
     };
-    // What all things in view have: the floor, then the objects in the rig's order.
+    // All surfaces in view: the floor, then the objects in the rig's order.
     struct Surface {
         Spectrum reflectance;
         double phong;
         double phong_size;
     };
-    // What a lamp does to a point as the camera sees it, without wavelength.
+    // A lamp's effect on a point as the camera sees it, without wavelength.
     struct Contribution {
         double diffuse = 0.0;   // sum of I cos(i) / (N d^2)  [1/m^2]
         double specular = 0.0;  // sum of I (m.l)^size phong / (N d^2)
@@ -179,7 +178,7 @@ class Tracer {
         double distance_m = 0.0;   // in water
         std::size_t surface = 0;
         int face = 0;
-        bool is_clear = false;  // set beforehand: no object is near, and none is looked for
+        bool is_clear = false;  // set beforehand: no object is near, and none is searched for
     };
     struct Index {
         double glass;
@@ -196,9 +195,9 @@ class Tracer {
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
     [[nodiscard]] double nearest_lamp_m() const;
     [[nodiscard]] VeilLights veil_in_view(const LightFamily& family, bool is_all_floor) const;
-    // Over the floor.
+    // On the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
-    // Which way a point of the image looks in air, z = 1; none where the lens has no image.
+    // The direction of an image point in air, z = 1; empty where the lens has no image.
     [[nodiscard]] std::optional<WideVector> sight(double column, double row) const;
     [[nodiscard]] bool look_along(const WideVector& sight, const Index& index, View& view) const;
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;

@@ -46,7 +46,7 @@ double TurnTable::density(double psi_rad) const {
     const auto at = static_cast<std::size_t>(std::log(psi_rad / angle_rad_.front()) / log_step_);
     const std::size_t n = std::min(at, kNodes - 2);
     const double along = (psi_rad - angle_rad_[n]) / (angle_rad_[n + 1] - angle_rad_[n]);
-    // In the last interval the line ends in 0, and so does the sine.
+    // In the last interval the line ends at 0, and so does the sine.
     if (n + 2 == kNodes) return line_[n] / (2.0 * std::numbers::pi * std::sin(angle_rad_[n]));
     return std::lerp(line_[n], line_[n + 1], along) / (2.0 * std::numbers::pi * std::sin(psi_rad));
 }
@@ -56,7 +56,7 @@ double TurnTable::quantile(double uniform) const {
     const auto n = std::min(static_cast<std::size_t>(above - share_.begin()), kNodes - 1) - 1;
     const double width = angle_rad_[n + 1] - angle_rad_[n];
     const double rest = uniform - share_[n];
-    // rest = line x + (change / width) x^2 / 2, solved without a difference of near equals.
+    // rest = line x + (change / width) x^2 / 2, solved without cancellation.
     const double line = line_[n];
     const double bend = (line_[n + 1] - line) / width;
     const double root = std::sqrt(std::max(0.0, line * line + 2.0 * bend * rest));

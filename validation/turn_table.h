@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The angles by which a Monte Carlo turns light, and how likely each is: the phase functions of all
-// scatterers at one wavelength, mixed by what each scatters, from a least turn on.
+// The angles by which a Monte Carlo scatters light, and their probabilities: the phase functions of
+// all scatterers at one wavelength, weighted by their scattering, from a least turn on.
 //
 //   P(psi)  density of directions,  2 pi int_least^pi P sin(psi) dpsi = 1     [1/sr]
 //
-// 2 pi P sin(psi) is a straight line between nodes whose ratio is the same from one to the next, so
-// that what is drawn is exactly what density() says, and both are within 1e-4 of the functions.
+// 2 pi P sin(psi) is a straight line between nodes in a constant ratio, so that samples follow
+// exactly the density() returned, and both are within 1e-4 of the functions.
 #pragma once
 
 #include "validation/traced_water.h"
@@ -17,10 +17,10 @@ namespace aphotic {
 
 class TurnTable {
   public:
-    // At one wavelength. least_rad: over 0.
+    // At one wavelength. least_rad: above 0.
     TurnTable(const TracedWater& water, double lambda_nm, double least_rad);
 
-    // Of light that is turned by least_rad or more  [1/m]
+    // Of light turned by least_rad or more  [1/m]
     [[nodiscard]] double scattering_per_m() const { return scattering_per_m_; }
     [[nodiscard]] double least_rad() const { return angle_rad_.front(); }
 

@@ -16,7 +16,7 @@ namespace {
 
 // Planes held at a time, of each renderer.
 constexpr std::size_t kPlanesAtATime = 6;
-// How much of the work the signals are, for the progress: a full spectrum against a few planes.
+// The share of the signals in the work, for the progress: a full spectrum against a few planes.
 constexpr double kShareOfSignals = 0.5;
 
 std::size_t pixels_of(const Rig& rig) {
@@ -24,12 +24,12 @@ std::size_t pixels_of(const Rig& rig) {
            static_cast<std::size_t>(rig.camera.height_px);
 }
 
-// Which wavelength, shortest as needed to tell it from others.
+// The wavelength, as short as distinguishes it from the others.
 std::string wavelength_name(double lambda_nm) {
     return fmt::format("{:.6g} nm", lambda_nm);
 }
 
-// Nothing where no emitter has a size, or its lamps are not known.
+// Empty if no emitter has a size, or its lamps are unknown.
 std::optional<Tracer> tracer_of_lamps(const Rig& rig,
                                       const RenderedImages& rendered,
                                       TraceOptions options) {
@@ -42,7 +42,7 @@ std::optional<Tracer> tracer_of_lamps(const Rig& rig,
 
 struct Edges {
     std::vector<unsigned char> marks;       // of every pixel: not compared
-    std::vector<std::size_t> in_penumbrae;  // compared with what the render's own lamps give
+    std::vector<std::size_t> in_penumbrae;  // compared with the result of the render's own lamps
 };
 
 Edges edges_of(const Tracer& reference,
@@ -72,8 +72,8 @@ struct HeldPlane {
     double bound = 0.0;
 };
 
-// In penumbrae the samples of the render's own lamps take the reference's place, once it is known
-// how far the render is from what stood there.
+// In penumbrae the samples of the render's own lamps replace the reference's, after the difference
+// from those has been recorded.
 Comparison compare_held(const HeldPlane& plane, const Edges& edges, int width_px) {
     double max_error = 0.0;
     for (std::size_t n = 0; n < edges.in_penumbrae.size(); ++n) {
@@ -96,7 +96,7 @@ void compare_radiance(const Rig& rig,
                       ValidationReport& report) {
     const std::size_t pixels = pixels_of(rig);
     const std::size_t count = rendered.lambda_nm.size();
-    // Nothing is bent without a port, and all wavelengths have the same edges.
+    // Without a port nothing is refracted, and all wavelengths have the same edges.
     std::optional<Edges> edges;
     for (std::size_t first = 0; first < count; first += kPlanesAtATime) {
         const std::size_t part = std::min(kPlanesAtATime, count - first);
@@ -182,7 +182,7 @@ void compare_signals(const Rig& rig,
 
 namespace {
 
-// Nothing but the veil is left where all is black.
+// Only the veil is left where all is black.
 VeilShare traced_veil_share(Rig rig, const CameraImage& traced) {
     VeilShare share{};
     if (!rig.water.scatters()) return share;

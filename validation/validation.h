@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Holds a finished render against the reference: every wavelength's radiance and every channel's
+// Compares a finished render with the reference: every wavelength's radiance and every channel's
 // signal, pixel by pixel, absolute scale included.
 //
 // Bounds of |e| off the edges (tracer.h):
@@ -13,12 +13,12 @@
 // In the penumbrae of emitters with a size, where some of its lamps are within a cone or unhidden
 // and some are not, the light is a staircase with as many steps as there are lamps, and the
 // reference has more of them. Such pixels are traced again with the render's own lamps, each a
-// point with edges of its own, and held to the same bounds; only those within rounding of one
-// lamp's edge are left on edges.
+// point with its own edges, and held to the same bounds; only those within rounding of one lamp's
+// edge remain on edges.
 //
-// Black, under which a difference is measured against it: for radiance the smallest normal half
-// float of the frame's exposure, for signals kBlackShare of the brightest, or where the frames'
-// half floats end (Manifest::black), whichever is more.
+// Black, below which errors are relative to it: for radiance the smallest normal half float of the
+// frame's exposure, for signals kBlackShare of the brightest, or where the frames' half floats end
+// (Manifest::black), whichever is more.
 #pragma once
 
 #include "validation/report.h"
@@ -33,10 +33,10 @@ namespace aphotic {
 inline constexpr double kHalfFloatBound = 6e-4;
 inline constexpr double kBlackShare = 1e-8;
 
-// A render, as the commands bring it.
+// A render, as the commands supply it.
 struct RenderedImages {
     std::vector<double> lambda_nm;
-    // By wavelength: whose refractive indices its frame has, and what that may change.
+    // By wavelength: whose refractive indices its frame has, and the possible effect of that.
     std::vector<double> index_nm;
     std::vector<double> shift_error;
     std::vector<double> radiance_black;  // and under which frames lose digits
@@ -46,12 +46,12 @@ struct RenderedImages {
     // The planes of radiance of wavelengths [first, first + count), one after another.
     std::function<std::vector<float>(std::size_t first, std::size_t count)> radiance;
     CameraImage signals;
-    // By strobe, what stands for its emitter; empty when it is not known: then penumbrae are edges.
+    // By strobe, the lamps of its emitter; empty if unknown: then penumbrae are edges.
     std::vector<EmitterLamps> lamps{};
 };
 
-// Traces, compares, and fills the report's comparisons, images, errors and trace_s; what is known
-// of the render alone is left to the caller. report: called with the share of the work.
+// Traces, compares, and fills the report's comparisons, images, errors and trace_s; what only the
+// render knows is left to the caller. report: called with the share of the work.
 [[nodiscard]] ValidationReport validate(const Rig& rig,
                                         const RenderedImages& rendered,
                                         int threads,

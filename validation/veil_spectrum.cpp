@@ -26,7 +26,7 @@ ArrayXXd lagrange(const ArrayXd& nodes, const ArrayXd& places) {
     return shares;
 }
 
-// From least to most, closer towards both.
+// From least to most, denser towards both.
 ArrayXd chebyshev(double least, double most, int count) {
     ArrayXd nodes(count);
     for (int n = 0; n < count; ++n)
@@ -77,7 +77,7 @@ VeilSpectrum::VeilSpectrum(const Rig& rig,
     place_rays(lambda_nm);
 }
 
-// The wavelengths nearest to Chebyshev's extremes, whose sets lie one in another.
+// The wavelengths nearest to Chebyshev's extremes, whose sets are nested.
 void VeilSpectrum::place_rays(const std::vector<double>& lambda_nm) {
     const Eigen::Map<const ArrayXd> all_nm(lambda_nm.data(), loss_per_m_.size());
     const double first_nm = all_nm.minCoeff();

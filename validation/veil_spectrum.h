@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's veil (traced_veil.h) of one pixel at many wavelengths. Of one ray it is a sum
+// The reference's veil (traced_veil.h) of one pixel at many wavelengths. For one ray it is a sum
 // over the points of the integral,
 //
 //   A(lambda) = sum_s Phi_s power_s sum_i b_i sum_n light_sin exp(-K path_n)
 //
 // The exponentials of points within kSmoothDepth of the nearest, (K_most - K_least) (path_n -
-// path_0), are summed at kLossNodes Chebyshev nodes of K alone and interpolated, which errs by less
-// than 1e-12 of that sum; farther points are summed at each wavelength.
+// path_0), are summed only at kLossNodes Chebyshev nodes of K and interpolated, with an error below
+// 1e-12 of that sum; farther points are summed at each wavelength.
 //
-// Behind a port each wavelength has a ray of its own. The rays part little and smoothly, so the
-// veil is interpolated over the wavelength that bends the ray, with the water's numbers of each
-// wavelength, between 3 rays, 5, 9 and 17, until two in turn agree to kVeilOverRays everywhere.
-// Where an edge of a beam or of an object lies between the rays they do not, and every ray is
-// traced.
+// Behind a port each wavelength has its own ray. The rays diverge little and smoothly, so the veil
+// is interpolated over the wavelength that refracts the ray, with the water's numbers of each
+// wavelength, between 3 rays, 5, 9 and 17, until two in turn agree to kVeilOverRays everywhere. If
+// an edge of a beam or of an object lies between the rays they do not, and every ray is traced.
 #pragma once
 
 #include "rig/rig.h"
@@ -36,14 +35,14 @@ class VeilSpectrum {
     // lambda_nm: in any order.
     VeilSpectrum(const Rig& rig, const TracedWater& water, const std::vector<double>& lambda_nm);
 
-    // Of one ray for all wavelengths.
+    // With one ray for all wavelengths.
     [[nodiscard]] Eigen::ArrayXd along(const VeilRay& ray) const;
 
-    // Of rays by wavelength: ray(j) is that of lambda_nm[j].
+    // With rays by wavelength: ray(j) is that of lambda_nm[j].
     [[nodiscard]] Eigen::ArrayXd along(const std::function<VeilRay(std::size_t)>& ray) const;
 
   private:
-    // Rays of some wavelengths, and what each counts in the veil of every wavelength.
+    // Rays of some wavelengths, and their weights in the veil of every wavelength.
     struct Rays {
         std::vector<std::size_t> wavelengths;
         Eigen::ArrayXXd shares;  // wavelength, ray

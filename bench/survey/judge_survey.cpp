@@ -266,7 +266,7 @@ int main(int argc, char** argv) {
         ->check(CLI::ExistingDirectory);
     app.add_option("CORRECTION", options.corrections, "NAME=DIR: a folder of corrected images")
         ->required();
-    app.add_option("--images", options.images, "of the survey's first so many; 0: all");
+    app.add_option("--images", options.images, "use the survey's first N images; 0: all");
     auto* picture = app.add_option("--picture", options.picture, "the images side by side, as PNG")
                         ->type_name("FILE")
                         ->check([](const std::string& file) {

@@ -36,12 +36,12 @@ bool has_step(const Cone& cone) {
     return cone.weight > 0.0 && cone.edge_rad == 0.0 && !ends_smoothly;
 }
 
-// cos^n, of a cosine that is not negative.
+// cos^n of a non-negative cosine.
 double falloff(double cosine, double exponent) {
     return exponent == 1.0 ? cosine : std::pow(cosine, exponent);
 }
 
-// POV-Ray's own, from a spotlight's falloff to its radius.
+// POV-Ray's own curve, from a spotlight's falloff to its radius.
 double smooth_step(double cosine, double none, double full) {
     const double t = std::clamp((cosine - none) / (full - none), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -54,9 +54,9 @@ double soft_edge(const Cone& cone, double cosine) {
         cosine, std::cos(cone.half_angle_rad), std::cos(cone.half_angle_rad - cone.edge_rad));
 }
 
-// Of cos^n(theta) as far as an angle. 1 - cos^(n + 1) is a small difference for narrow cones: expm1
-// and log1p keep its digits.
-double lobe_flux(double half_angle_rad, double exponent) {
+// The integral of cos^n(theta) up to an angle. 1 - cos^(n + 1) is a small difference for narrow
+// cones: expm1 and log1p keep its digits.
+double cone_flux(double half_angle_rad, double exponent) {
     if (exponent == 1.0) {
         const double sin_gamma = std::sin(half_angle_rad);
         return std::numbers::pi * sin_gamma * sin_gamma;
@@ -67,10 +67,10 @@ double lobe_flux(double half_angle_rad, double exponent) {
     return -2.0 * std::numbers::pi / n * std::expm1(n * ln_cos);
 }
 
-// Of the lobe that is cos^n(theta) S(theta). In the angle, for cos^n of a soft edge that reaches 90
-// degrees has no end of derivatives in the cosine.
-double lobe_flux(const Cone& cone) {
-    if (cone.edge_rad == 0.0) return lobe_flux(cone.half_angle_rad, cone.exponent);
+// The integral for the cone cos^n(theta) S(theta). Over the angle, because cos^n of a soft edge
+// that reaches 90 degrees has unbounded derivatives in the cosine.
+double cone_flux(const Cone& cone) {
+    if (cone.edge_rad == 0.0) return cone_flux(cone.half_angle_rad, cone.exponent);
     using Gauss = boost::math::quadrature::gauss<double, 30>;
     const double full_rad = cone.half_angle_rad - cone.edge_rad;
     const auto ring = [&](double theta_rad) {
@@ -78,13 +78,13 @@ double lobe_flux(const Cone& cone) {
         return 2.0 * std::numbers::pi * std::sin(theta_rad) * falloff(cosine, cone.exponent) *
                soft_edge(cone, cosine);
     };
-    return lobe_flux(full_rad, cone.exponent) +
+    return cone_flux(full_rad, cone.exponent) +
            Gauss::integrate(ring, full_rad, cone.half_angle_rad);
 }
 
 // A_k.
 double axial_intensity(const Cone& cone, ConeWeights weights) {
-    return weights == ConeWeights::Literal ? cone.weight : cone.weight / lobe_flux(cone);
+    return weights == ConeWeights::Literal ? cone.weight : cone.weight / cone_flux(cone);
 }
 
 Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
@@ -96,7 +96,7 @@ Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& toward
     return {c * x + s * y, c * y - s * x, frame.axis.dot(towards)};
 }
 
-// Beyond what a window lets out: its last.
+// Beyond the directions that a window transmits: the last of them.
 PatternView view_of(const Beam& beam, const Vector3d& direction) {
     if (!beam.window) return {.direction = direction};
     if (const auto found = in_air(*beam.window, direction))
@@ -124,7 +124,7 @@ bool is_within(const std::vector<double>& range, double angle) {
     return angle >= range.front() && angle <= range.back();
 }
 
-// A table's direction moved into its angles.
+// A table's direction moved into the range of its angles.
 Vector3d into_table(const BeamTable& table, const Vector3d& direction) {
     GoniometerAngles at = angles_of(table.angles, direction);
     at.vertical_rad =
@@ -142,7 +142,7 @@ bool is_in_table(const BeamTable& table, const Vector3d& direction) {
            (table.horizontal_rad.size() == 1 || is_within(table.horizontal_rad, at.horizontal_rad));
 }
 
-// Beyond a line at which the table ends with a step; where it ends at 0, it goes on as 0.
+// Continues past a line at which the table ends with a step; a table that ends at 0 continues as 0.
 bool is_beyond_edge(const BeamTable& table, const Vector3d& direction) {
     const GoniometerAngles at = angles_of(table.angles, direction);
     return std::ranges::any_of(edges_of(table), [&](const TableEdge& edge) {
@@ -184,7 +184,8 @@ double most_of_cones(const Beam& beam, double nearest_rad) {
     return intensity;
 }
 
-// A cone of directions in water as one in air that holds it, and the bound of the window's factor.
+// A cone of directions in water as a cone in air that contains it, and the bound of the window's
+// factor.
 struct PatternCone {
     Vector3d direction;
     double nearest_rad = 0.0;  // to the axis
@@ -192,8 +193,8 @@ struct PatternCone {
     double factor = 1.0;
 };
 
-// Nothing: the window lets nothing out there. In air, by sin(theta) = n sin(theta_w), the azimuth's
-// share of a way grows n times; in water it is pi/2 times the angle at most.
+// Empty where the window transmits nothing. In air, by sin(theta) = n sin(theta_w), the azimuthal
+// part of a displacement grows n times; in water it is at most pi/2 times the angle.
 std::optional<PatternCone> cone_of(const Beam& beam, const Vector3d& direction, double within_rad) {
     const double theta_rad = angle_between(Vector3d::UnitZ(), direction);
     const double nearest_rad = std::max(0.0, theta_rad - within_rad);
@@ -212,8 +213,8 @@ std::optional<PatternCone> cone_of(const Beam& beam, const Vector3d& direction, 
                        .factor = window_factor(window, std::max(0.0, std::cos(far_rad)))};
 }
 
-// Where the light of a ring about the axis is no smooth function of its angle: cones' edges, a
-// table's rows; and some besides, for patterns that have lines of other shapes.
+// Where the light of a ring about the axis is not a smooth function of its angle: cones' edges, a
+// table's rows; and some more for patterns with lines of other shapes.
 std::vector<double> breaks_rad(const Beam& beam) {
     constexpr int kPieces = 45;
     std::vector<double> breaks{0.0, kRightAngle_rad};
@@ -231,8 +232,8 @@ std::vector<double> breaks_rad(const Beam& beam) {
     return breaks;
 }
 
-// What a window lets out: the integral of T I over directions in air. In the azimuth by 720 equal
-// steps, exact for tables of whole degrees.
+// The window's transmission: the integral of T I over directions in air. 720 equal steps in
+// azimuth, exact for tables of whole degrees.
 double flux_through_window(const Beam& beam) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     const int turns = is_pattern(beam) ? 720 : 1;
@@ -256,7 +257,7 @@ double flux_through_window(const Beam& beam) {
     return sum;
 }
 
-// Of all directions of a grid, how steeply I changes and how it bends, as shares of it.
+// For all directions of a grid, the relative slope and curvature of I.
 double steepest_by_grid(const Beam& beam) {
     constexpr double kStep_rad = std::numbers::pi / 180.0;
     constexpr int kRings = 90;
@@ -444,10 +445,10 @@ double steepest_exponent(const Beam& beam) {
 
 double flux_of(const Beam& beam) {
     if (beam.window) return flux_through_window(beam);
-    if (is_pattern(beam)) return 1.0;  // per_flux is for that
+    if (is_pattern(beam)) return 1.0;  // per_flux accounts for it
     double flux = 0.0;
     for (const Cone& cone : beam.cones) {
-        flux += beam.weights == ConeWeights::Flux ? cone.weight : cone.weight * lobe_flux(cone);
+        flux += beam.weights == ConeWeights::Flux ? cone.weight : cone.weight * cone_flux(cone);
     }
     return flux;
 }
@@ -495,7 +496,7 @@ std::vector<ConeLight> cone_lights(const Beam& beam) {
 }
 
 std::string beam_signature(const Beam& beam) {
-    // Names every field, here and below: a further one has to be told.
+    // Names every field, here and below: a new field must be added.
     const auto& [name, weights, beam_cones, pattern, per_flux, turn_rad, window] = beam;
     std::vector<std::string> parts;
     for (const Cone& cone : beam_cones) {

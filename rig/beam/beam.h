@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a strobe's light is spread over directions: all that may be asked of a beam.
+// The distribution of a strobe's light over directions: everything that may be asked of a beam.
 //
 //   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
 //
 // A beam is a sum of cones about the strobe's axis, or a pattern: a measured table
-// (rig/beam/beam_table.h) or what a lens makes of a diffuser (rig/beam/beam_optics.h). Either may
-// have been measured in air, behind a window (rig/beam/beam_window.h). With theta the angle off the
-// axis, cones are
+// (rig/beam/beam_table.h) or the image of a diffuser through a lens (rig/beam/beam_optics.h).
+// Either may have been measured in air, behind a window (rig/beam/beam_window.h). With theta the
+// angle off the axis, cones are
 //
 //   I = sum of A_k cos^n_k(theta) S_k(theta) over the cones with theta <= gamma_k, theta < 90
 //   degrees
@@ -19,13 +19,13 @@
 //             alpha_k of the flux; for n = 1 without a soft edge, alpha_k / (pi sin^2 gamma_k)
 //   literal:  A_k = alpha_k, as the source paper prints it
 //
-// A pattern is scaled to a flux of 1, in air where it was measured there: what a window reflects is
+// A pattern is scaled to a flux of 1, in air if it was measured there: the window's reflections are
 // lost.
 //
-// Whoever wants to know of a beam asks here, and knows no kind of it. Three read the kinds
+// Callers ask for a beam's properties here and do not know its kind. Three read the kinds
 // themselves: the rig's reader, scene_gen/beam_sdl.h for POV-Ray, and the reference (validation/),
-// which computes light from what the rig says and nothing else. A further kind is a file beside
-// rig/beam/beam_table.h, its case in rig/beam/beam.cpp, and these three.
+// which computes light from the rig's description only. A new kind is a file next to
+// rig/beam/beam_table.h, a case in rig/beam/beam.cpp, and these three.
 #pragma once
 
 #include "rig/beam/beam_optics.h"
@@ -53,7 +53,7 @@ struct Cone {
     [[nodiscard]] bool operator==(const Cone&) const = default;
 };
 
-// What a cone's weight means: its share of the lamp's flux, or its intensity on the axis.
+// The meaning of a cone's weight: its share of the lamp's flux, or its intensity on the axis.
 enum class ConeWeights { Flux, Literal };
 
 using BeamPattern = std::variant<std::monostate, BeamTable, BeamOptics>;
@@ -61,10 +61,10 @@ using BeamPattern = std::variant<std::monostate, BeamTable, BeamOptics>;
 struct Beam {
     std::string name;
     ConeWeights weights = ConeWeights::Flux;
-    std::vector<Cone> cones;  // of a beam that has no pattern
+    std::vector<Cone> cones;  // of a beam without a pattern
     BeamPattern pattern{};
-    double per_flux = 1.0;               // of the pattern: 1 / its own flux, by scaled_to_flux()
-    double turn_rad = 0.0;               // of the pattern about the axis, from along to across
+    double per_flux = 1.0;  // of the pattern: 1 / its own flux, from scaled_to_flux()
+    double turn_rad = 0.0;  // rotation of the pattern about the axis, from along to across
     std::optional<BeamWindow> window{};  // measured in air
 
     [[nodiscard]] bool operator==(const Beam&) const = default;
@@ -73,10 +73,10 @@ struct Beam {
 // A pattern with its per_flux.
 [[nodiscard]] Beam scaled_to_flux(Beam beam);
 
-// How a beam, and an emitter, lies in the sled's frame: unit vectors. `along` is the sled's forward
-// direction as the plane across the axis sees it (down, for an axis within a millionth of a radian
-// of fore or aft, where forward is all but lost in rounding), across = axis x along. aphotic.inc
-// has the same rule.
+// The orientation of a beam, and of an emitter, in the sled's frame: unit vectors. `along` is the
+// sled's forward direction projected on the plane across the axis (down, for an axis within a
+// millionth of a radian of fore or aft, where rounding leaves almost nothing of forward), across =
+// axis x along. aphotic.inc has the same rule.
 struct BeamFrame {
     Eigen::Vector3d axis;
     Eigen::Vector3d along;
@@ -91,23 +91,23 @@ inline constexpr double kForeAndAftSine = 1e-6;
                                        const BeamFrame& frame,
                                        const Eigen::Vector3d& towards);
 
-// A direction as the pattern has it: in the lamp's frame, turned, and in air if it was measured
-// there. None where the window lets nothing out.
+// A direction in the pattern's frame: the lamp's frame, rotated, and in air if it was measured
+// there. Empty where the window transmits nothing.
 struct PatternView {
     Eigen::Vector3d direction;
-    double factor = 1.0;  // of what the pattern has there
+    double factor = 1.0;  // relative to the pattern's value there
 };
 [[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
                                                       const BeamFrame& frame,
                                                       const Eigen::Vector3d& towards);
-// intensity_towards() as though what lights the direction `from` had no edge: where a small turn
-// crosses none, it is I itself.
+// intensity_towards() as if the edge that lights the direction `from` were not there: where a small
+// turn crosses no edge, it is I itself.
 [[nodiscard]] double continued_intensity(const Beam& beam,
                                          const BeamFrame& frame,
                                          const Eigen::Vector3d& towards,
                                          const Eigen::Vector3d& from);
 
-// Bound of I over all directions within an angle of this one, and over all there are.
+// Upper bound of I over all directions within an angle of this one, and over all directions.
 [[nodiscard]] double most_intensity(const Beam& beam,
                                     const BeamFrame& frame,
                                     const Eigen::Vector3d& towards,
@@ -122,43 +122,45 @@ struct PatternView {
 [[nodiscard]] bool is_dark(const Beam& beam);
 
 // The angles off the axis where I has a step, or falls as steeply as one: cos^n goes to 0 at 90
-// degrees, so there a cone has an edge if n < 1 alone. Behind a window, where its light ends.
+// degrees, so a cone has an edge there only if n < 1. Behind a window, where its light ends.
 [[nodiscard]] std::vector<double> edges_rad(const Beam& beam);
-// Steps that are no circle about the axis: those of a table over a rectangle of angles, or of a
-// sharp image. They bound one region of directions, within which its light is.
+// Steps that are not circles about the axis: those of a table over a rectangle of angles, or of a
+// sharp image. They bound one region of directions, which contains the light.
 [[nodiscard]] bool has_rim(const Beam& beam);
 [[nodiscard]] bool is_within_rim(const Beam& beam,
                                  const BeamFrame& frame,
                                  const Eigen::Vector3d& towards);
 
-// I changes no more steeply with the direction than cos to this power does, nor bends more: for
+// I changes no more steeply with the direction than cos to this power does, and curves no more: for
 // cones without soft edges (ln I)' >= n (ln cos)'. For all others it is found on a grid of a
-// degree, with I taken for no less than kDimBeamShare of the largest, and is an estimate.
+// degree, with I limited to at least kDimBeamShare of the largest, and is an estimate.
 inline constexpr double kDimBeamShare = 0.01;
 [[nodiscard]] double steepest_exponent(const Beam& beam);
 
 // The flux of a lamp of power 1: the integral of I over all directions.
 [[nodiscard]] double flux_of(const Beam& beam);
 
-// What adds up to the beam: its cones, each a beam with the cone's name; a pattern by itself.
+// The parts that add up to the beam: its cones, each a beam with the cone's name; a pattern is one
+// part.
 [[nodiscard]] std::vector<Beam> parts_of(const Beam& beam);
-// The beam of those that are wanted.
+// The beam of the selected parts.
 [[nodiscard]] Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wanted);
 
-// A cone as plain numbers, for loops over many directions. Of a beam that is a pattern there are
-// none. Behind a window cosines are those in air.
+// A cone as plain numbers, for loops over many directions. Empty for a beam that is a pattern.
+// Behind a window cosines are those in air.
 struct ConeLight {
     double on_axis = 0.0;  // [1/sr]
     double exponent = 1.0;
     double edge_cosine = 0.0;
-    double full_cosine = -1.0;  // where its soft edge begins; -1: it has none
+    double full_cosine = -1.0;  // where its soft edge begins; -1 for none
 
-    // I at a cosine, as though the direction `from` of the other cosine had no edge.
+    // I at a cosine, as if the edge between it and the direction `from` of the other cosine were
+    // not there.
     [[nodiscard]] double at(double cosine, double cosine_from) const;
 };
 [[nodiscard]] std::vector<ConeLight> cone_lights(const Beam& beam);
 
-// Beams of the same signature shine alike. Names do not count.
+// Beams of the same signature have the same light. Names are ignored.
 [[nodiscard]] std::string beam_signature(const Beam& beam);
 
 }  // namespace aphotic

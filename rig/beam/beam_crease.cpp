@@ -12,14 +12,14 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// Of the creases of one beam: its own directions in the sled's frame, and the window's index.
+// For the creases of one beam: its own directions in the sled's frame, and the window's index.
 struct CreaseFrame {
     Vector3d X;
     Vector3d Y;
     Vector3d Z;
     double n;  // 1 without a window
 
-    // w.l = at in air, with l across the axis: in water the sine is the n-th part.
+    // w.l = at in air, with l across the axis: in water the sine is smaller by n.
     [[nodiscard]] Crease circle_across(const Vector3d& l, double sine) const {
         return {.l = l, .at = sine / n};
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where a beam is not smooth: steps and kinks of its intensity, as surfaces of directions w of
-// length 1, and where a great circle crosses them.
+// Where a beam is not smooth: steps and kinks of its intensity, as surfaces of unit directions w,
+// and where a great circle crosses them.
 //
 //   l.w = at                       a circle about l: a cone's edge, both ends of a soft one, a row
 //                                  of a table; with at = 0 a plane: a column
@@ -10,9 +10,9 @@
 //   w(phi) = e cos(phi) + u sin(phi)        e and u unit vectors, one across the other
 //
 // On the circle the first is A cos(phi) + B sin(phi) = at, with A = l.e and B = l.u; the second is
-// the same of 2 phi. Both have closed forms. Between neighbouring crossings I is analytic, but for
-// one kind of beam: the corners of a blurred rectangle behind a window, where the slope of I has no
-// step and its bend has, are left out.
+// the same in 2 phi. Both have closed forms. Between neighbouring crossings I is analytic, with one
+// exception: the corners of a blurred rectangle behind a window, where the slope of I is continuous
+// and its curvature steps, are omitted.
 #pragma once
 
 #include "rig/beam/beam.h"
@@ -30,7 +30,7 @@ struct Crease {
     bool is_quadratic = false;  // of Q; else of l
 };
 
-// A surface may carry more than the crease itself: where I is smooth after all.
+// A surface may extend past the crease itself, where I is smooth after all.
 [[nodiscard]] std::vector<Crease> creases_of(const Beam& beam, const BeamFrame& frame);
 
 // Adds each phi of a crossing, from -pi to pi.

@@ -19,7 +19,7 @@ namespace {
 const std::vector<std::string> kRoundColumns{"theta_deg", "intensity"};
 const std::vector<std::string> kTurnColumns{"theta_deg", "phi_deg", "intensity"};
 
-// The different values of a column in order, each with the first line that has it.
+// The distinct values of a column in order, each with the first line that has it.
 std::vector<FileNumber> values_of(const Table& table, std::size_t column) {
     std::map<double, std::size_t> line_of;
     for (const TableRow& row : table.rows) line_of.emplace(row.fields[column], row.line);
@@ -33,7 +33,7 @@ std::size_t index_of(double value, const std::vector<FileNumber>& values) {
     return static_cast<std::size_t>(found - values.begin());
 }
 
-// What the row at each theta and phi says, theta fastest.
+// The intensity at each theta and phi, theta fastest.
 std::vector<FileNumber> grid_of(const Table& table,
                                 const std::vector<FileNumber>& thetas,
                                 const std::vector<FileNumber>& phis) {
@@ -58,7 +58,7 @@ std::vector<FileNumber> grid_of(const Table& table,
         if (node.line > 0) {
             fail_at_line(table.name,
                          row.line,
-                         fmt::format("found a second row of {}; allowed: one, as in line {}",
+                         fmt::format("found a second row of {}, first on line {}; allowed: one",
                                      place(theta, phi),
                                      node.line));
         }
@@ -69,8 +69,7 @@ std::vector<FileNumber> grid_of(const Table& table,
         fail_at_line(
             table.name,
             table.rows.back().line,
-            fmt::format("found no row of {}; allowed: one for each theta_deg and each "
-                        "phi_deg",
+            fmt::format("found no row for {}; allowed: one for each theta_deg and phi_deg",
                         place(thetas[i % thetas.size()].value, phis[i / thetas.size()].value)));
     }
     return grid;
@@ -90,21 +89,21 @@ void unfold(PhotometricFile& photometry,
     if (first != 0.0 || (last != 360.0 && !closes_evenly(phis))) {
         fail_at_line(file,
                      phis.back().line,
-                     fmt::format("phi_deg: found {} to {}; allowed: 0 to 360, of which 360 may be "
-                                 "missing after even steps, or 0 alone",
+                     fmt::format("phi_deg: found {} to {}; allowed: 0 to 360 (360 may be omitted "
+                                 "where steps are even), or 0 alone",
                                  first,
                                  last));
     }
     if (last == 360.0 && planes.back().intensity != planes.front().intensity) {
         fail_at_line(file,
                      phis.back().line,
-                     "found other intensities at phi_deg 360 than at 0; allowed: the same, for it "
-                     "is one direction");
+                     "found intensities at phi_deg 360 that differ from those at 0; allowed: the "
+                     "same, since it is one direction");
     }
     set_turn(photometry.table, std::move(planes));
 }
 
-// Of one line, in which no colon ends a keyword early.
+// A line for which no colon ends a keyword early.
 std::string comment(const PhotometricLabel& label) {
     std::string keyword = label.keyword.empty() ? "other" : label.keyword;
     std::ranges::replace(keyword, ':', ' ');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// .csv: a beam as a table of our own, in the form of spectral/table.h:
+// .csv: a beam as a table in our own format, as in spectral/table.h:
 //
 //   # source: goniometer, 2 m, tank
 //   theta_deg,intensity                 or   theta_deg,phi_deg,intensity
@@ -12,9 +12,9 @@
 // up, to port for one that points down with along forward (rig/beam/beam_table.h). Intensities are
 // 0 or more, in any unit, linear in both angles between the rows and 0 beyond the last theta.
 //
-// The rows may stand in any order. With phi, there is one row for each theta and each phi, and phi
-// goes all about: 0 to 360 degrees, with the intensities of 0 again at 360, which may be left out
-// where the steps are even. Nothing is mirrored. phi = 0 alone is the same all about.
+// The rows may be in any order. With phi, there is one row for each theta and each phi, and phi
+// makes a full turn: 0 to 360 degrees, with the intensities of 0 repeated at 360, which may be
+// omitted if the steps are even. Nothing is mirrored. phi = 0 alone means the same all around.
 #pragma once
 
 #include "rig/beam/photometric_file.h"
@@ -24,10 +24,10 @@
 
 namespace aphotic {
 
-// file_name stands in messages.
+// file_name is for messages.
 [[nodiscard]] PhotometricFile parse_beam_csv(const std::string& file_name, std::string_view text);
 
-// Of type C; others are an InputError.
+// Type C only; others are an InputError.
 [[nodiscard]] std::string beam_csv_text(const PhotometricFile& photometry,
                                         const std::string& file_name);
 

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 const BeamFrame kLamp{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
 constexpr double kFine_deg = 0.1;
 
-// By halving, between an angle where it is bright and one where it is not.
+// By bisection, between an angle where it is bright and one where it is not.
 double edge_of_half(const Beam& beam, BeamPlane plane, double bright, double dim, double half) {
     constexpr double kClose_rad = 1e-9;
     while (std::abs(dim - bright) > kClose_rad) {
@@ -88,7 +88,7 @@ BeamTable sampled(const Beam& beam, const BeamFigures& figures) {
             is_round(beam) ? std::vector<double>{0.0} : steps_rad(kWholeTurn_deg, kExportTurn_deg),
         .intensity = {}};
     for (std::size_t h = 0; h < table.horizontal_rad.size(); ++h) {
-        // The last plane is the first, to the bit.
+        // The last plane equals the first exactly.
         const bool is_last = h > 0 && h + 1 == table.horizontal_rad.size();
         const double phi_rad = is_last ? 0.0 : table.horizontal_rad[h];
         for (const double theta_rad : table.vertical_rad) {

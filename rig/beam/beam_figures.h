@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a data sheet says of a beam, and the beam as a table for other programs.
+// A beam's data sheet figures, and the beam as a table for other programs.
 //
 //   flux     integral of I over all directions: 1, less what is lost in a window
 //   largest  of I, on a grid of a tenth of a degree                      [1/sr]
@@ -25,14 +25,14 @@ struct BeamFigures {
 [[nodiscard]] BeamFigures figures_of(const Beam& beam);
 
 // I in the plane of the axis and along or across; theta from -180 to 180 degrees, negative to aft
-// and port of a lamp that points down.
+// and port for a lamp that points down.
 enum class BeamPlane { Along, Across };
 [[nodiscard]] double intensity_in_plane(const Beam& beam, BeamPlane plane, double theta_rad);
 
-// A table that shines as the beam does, for a lamp of so many lumens: its own where it is one, in
-// water and not turned. Others are sampled every kExportStep_deg off the axis and every
-// kExportTurn_deg about it, and between its nodes it errs by `error` of the largest intensity,
-// found in the middle of every cell.
+// A table with the beam's light, for a lamp of so many lumens: its own if it is a table, in water
+// and not rotated. Others are sampled every kExportStep_deg off the axis and every kExportTurn_deg
+// about it; between nodes it errs by `error` of the largest intensity, found in the middle of every
+// cell.
 inline constexpr double kExportStep_deg = 1.0;
 inline constexpr double kExportTurn_deg = 5.0;
 struct ExportedBeam {

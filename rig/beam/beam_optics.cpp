@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of the disc of radius 1, the part with x below and y below.
+// The area of the unit disc below x and below y.
 double disc_corner(double x, double y) {
     const auto slice = [](double t) {  // of x below t
         t = std::clamp(t, -1.0, 1.0);
@@ -27,13 +27,13 @@ double disc_corner(double x, double y) {
     if (y >= 1.0) return slice(x);
     const double x2_y2 = x * x + y * y;
     if (x2_y2 >= 1.0) {
-        // The corner is outside: it cuts off caps that do not meet, or takes one alone.
+        // The corner is outside: it cuts off caps that do not meet, or only one.
         if (x >= 0.0 && y >= 0.0) return slice(x) + slice(y) - std::numbers::pi;
         if (x >= 0.0) return slice(y);
         if (y >= 0.0) return slice(x);
         return 0.0;
     }
-    // A quarter of the disc, half of what each slice has more than half of it, and a rectangle.
+    // A quarter of the disc, half the excess of each slice over half the disc, and a rectangle.
     return 0.5 * (slice(x) + slice(y)) - 0.25 * std::numbers::pi + x * y;
 }
 
@@ -41,7 +41,7 @@ double defocus(const BeamOptics& optics) {
     return 1.0 - optics.distance_m / optics.focal_length_m;
 }
 
-// Of the lens, where light of a slope comes from the rectangle.
+// The part of the lens where light of a slope comes from the rectangle.
 double lit_area_m2(const BeamOptics& optics, const Vector2d& slope) {
     const double R = 0.5 * optics.aperture_m;
     const double k = std::abs(defocus(optics));
@@ -53,7 +53,7 @@ double lit_area_m2(const BeamOptics& optics, const Vector2d& slope) {
     }
     const Vector2d high = (middle_m + half_m) / (k * R);
     const Vector2d low = (middle_m - half_m) / (k * R);
-    if (low.cwiseMax(0.0).squaredNorm() >= 1.0) return 0.0;  // and not what rounding leaves
+    if (low.cwiseMax(0.0).squaredNorm() >= 1.0) return 0.0;  // and not a rounding remainder
     const double area = disc_corner(high.x(), high.y()) - disc_corner(low.x(), high.y()) -
                         disc_corner(high.x(), low.y()) + disc_corner(low.x(), low.y());
     return R * R * std::max(0.0, area);
@@ -68,7 +68,7 @@ double cosine_of(const Vector3d& direction) {
 }
 
 // The slopes x/z of all directions within an angle: least and largest, from the planes through the
-// other axis that touch the cone of them. Nothing when it reaches 90 degrees.
+// other axis that touch their cone. Empty when it reaches 90 degrees.
 std::optional<std::array<double, 2>> slopes_within(double x, double z, double sine) {
     const double a = z * z - sine * sine;
     if (z <= 0.0 || a <= 0.0) return std::nullopt;
@@ -81,7 +81,7 @@ double nearest_to_zero(const std::optional<std::array<double, 2>>& range) {
     return std::clamp(0.0, (*range)[0], (*range)[1]);
 }
 
-// The integral of dm / (1 + m^2)^2 over the corner 0 to m: Lambert's of a rectangle.
+// The integral of dm / (1 + m^2)^2 from the corner 0 to m: Lambert's for a rectangle.
 double corner_share(double x, double y) {
     const double x1 = std::sqrt(1.0 + x * x);
     const double y1 = std::sqrt(1.0 + y * y);
@@ -108,7 +108,7 @@ double most_optics_intensity(const BeamOptics& optics,
     if (cos_nearest <= 0.0) return 0.0;
     if (within_rad >= 0.5 * std::numbers::pi) return most_optics_intensity(optics);
     const double sine = std::sin(within_rad);
-    // The area shrinks with either slope, whatever the other.
+    // The area shrinks with either slope, independently of the other.
     const Vector2d nearest(nearest_to_zero(slopes_within(unit.x(), unit.z(), sine)),
                            nearest_to_zero(slopes_within(unit.y(), unit.z(), sine)));
     return cos_nearest * lit_area_m2(optics, nearest);
@@ -122,7 +122,7 @@ double optics_flux(const BeamOptics& optics) {
     using Kronrod = boost::math::quadrature::gauss_kronrod<double, 31>;
     constexpr unsigned kHalvings = 8;
     constexpr double kClose = 1e-11;
-    constexpr int kTurns = 128;  // round a quarter of the disc, whose four are alike
+    constexpr int kTurns = 128;  // round a quarter of the disc; all four are alike
     const double R = 0.5 * optics.aperture_m;
     const double k = defocus(optics);
     const double s = optics.distance_m;
@@ -134,8 +134,8 @@ double optics_flux(const BeamOptics& optics) {
         return corner_share(x1, y1) - corner_share(x0, y1) - corner_share(x1, y0) +
                corner_share(x0, y0);
     };
-    // In parts of the lens: Boost compares an error that it has not multiplied by the interval's
-    // length, and would halve those of small lenses without end.
+    // In parts of the lens: Boost compares an error that is not multiplied by the interval's
+    // length, and would bisect those of small lenses without end.
     const auto ring = [&](double part) {
         double sum = 0.0;
         for (int i = 0; i < kTurns; ++i) {

@@ -8,18 +8,18 @@
 //   s, f    rectangle to lens, and focal length [m]
 //   lens    a disc of radius R = aperture/2 about the axis
 //
-// per unit of the rectangle's radiance, which is the same everywhere and in all directions. Light
-// that leaves the lens at x with slope m comes from the point x (1 - s/f) - s m of the rectangle,
-// so the area is that of the disc within a rectangle: half sides those of the diffuser over
-// |1 - s/f|, middle s m / (1 - s/f).
+// per unit of the rectangle's radiance, which is uniform and isotropic. Light that leaves the lens
+// at x with slope m comes from the point x (1 - s/f) - s m of the rectangle, so the area is that of
+// the disc within a rectangle: half sides those of the diffuser over |1 - s/f|, middle s m / (1 -
+// s/f).
 //
 //   s = f        a sharp image of the rectangle, cut at the slopes u/f: I has steps there
 //   s otherwise  the image is blurred by the lens: I falls smoothly
 //
-// The flux is the integral over the lens of what each point of it takes from the rectangle, which
-// has a closed form of its own (Lambert's of a rectangle).
+// The flux is the integral over the lens of what each of its points receives from the rectangle,
+// which has a closed form (Lambert's for a rectangle).
 //
-// Limits: a thin lens without aberration or loss, light by geometry; beyond 90 degrees nothing.
+// Limits: a thin lens without aberration or loss, geometrical optics; no light beyond 90 degrees.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,11 +39,10 @@ struct BeamOptics {
 // Directions are in the lamp's frame: x along, y across, z the axis, of any length but 0.
 
 [[nodiscard]] double optics_intensity(const BeamOptics& optics, const Eigen::Vector3d& direction);
-// The same as though the rectangle had no end: what stands on the near side of a sharp image's
-// edge.
+// The same as if the rectangle had no end: the value on the near side of a sharp image's edge.
 [[nodiscard]] double endless_intensity(const BeamOptics& optics, const Eigen::Vector3d& direction);
 
-// Bound of I over all directions within an angle of this one, and over all there are.
+// Upper bound of I over all directions within an angle of this one, and over all directions.
 [[nodiscard]] double most_optics_intensity(const BeamOptics& optics,
                                            const Eigen::Vector3d& direction,
                                            double within_rad);
@@ -52,7 +51,7 @@ struct BeamOptics {
 // The integral of I over all directions [m^2 sr].
 [[nodiscard]] double optics_flux(const BeamOptics& optics);
 
-// The diffuser lies in the lens's focal plane: the image has an edge, and a direction is within it.
+// The diffuser is in the lens's focal plane: the image has an edge, and a direction is within it.
 [[nodiscard]] bool is_focused(const BeamOptics& optics);
 [[nodiscard]] bool is_within_image(const BeamOptics& optics, const Eigen::Vector3d& direction);
 

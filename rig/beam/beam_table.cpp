@@ -16,7 +16,7 @@ namespace {
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kQuarterTurn_rad = 0.25 * kTurn_rad;
 
-// What rounding may move an angle by, and with room, raise an interpolated value by.
+// The rounding error of an angle, and with margin, of an interpolated value.
 constexpr double kAngleRounding_rad = 1e-12;
 constexpr double kValueRounding = 1.0 + 8.0 * std::numeric_limits<double>::epsilon();
 
@@ -59,7 +59,7 @@ struct GridPlace {
     double share = 0.0;
 };
 
-// Of an x within the nodes' range.
+// For an x within the nodes' range.
 GridPlace place_of(double x, const std::vector<double>& nodes) {
     if (nodes.size() == 1) return {};
     const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
@@ -73,7 +73,7 @@ double between(double a, double b, double share) {
     return (1.0 - share) * a + share * b;
 }
 
-// One plane of the table, or what lies between two.
+// A plane of the table, or interpolated between two.
 class TablePlane {
   public:
     TablePlane(const BeamTable& table, const GridPlace& horizontal)
@@ -101,9 +101,9 @@ class TablePlane {
     double share_;
 };
 
-// The smallest rectangle of angles that holds all directions within an angle of one. On a globe, a
-// cap of radius r about the latitude b that has no pole reaches asin(sin r / cos b) of longitude to
-// both sides.
+// The smallest rectangle of angles that contains all directions within an angle of one. On a globe,
+// a cap of radius r about latitude b that contains no pole spans asin(sin r / cos b) of longitude
+// to either side.
 struct AngleBox {
     AngleRange vertical;
     AngleRange horizontal;
@@ -148,8 +148,8 @@ double most_within(const BeamTable& table, const AngleBox& box) {
     return most;
 }
 
-// The integral over each node's hat, the function that is 1 at the node, 0 at the others and
-// linear between them, by the weights of one side of it: `side(node, other)`.
+// The integral over each node's hat, the function that is 1 at the node, 0 at the others and linear
+// between them, from the weights of one of its sides: `side(node, other)`.
 template <typename Side>
 std::vector<double> hat_integrals(const std::vector<double>& nodes, Side side) {
     std::vector<double> integrals(nodes.size(), 0.0);
@@ -177,7 +177,7 @@ std::vector<double> longitude_weights(const std::vector<double>& longitudes) {
                          [](double x, double other) { return 0.5 * std::abs(other - x); });
 }
 
-// Whether a line of the table, where one angle stays, has light.
+// Whether a line of the table, along which one angle is constant, has light.
 bool line_shines(const BeamTable& table, TableAngle fixed, std::size_t index) {
     const std::size_t rows = table.vertical_rad.size();
     const std::size_t columns = table.horizontal_rad.size();
@@ -238,7 +238,7 @@ double most_table_intensity(const BeamTable& table, const Vector3d& direction, d
     const AngleBox box = box_about(table.angles, direction, within_rad);
     double most = most_within(table, box);
     if (table.angles == TableAngles::TypeC && !is_round(table)) {
-        // What lies over the seam, where the turn begins anew.
+        // The part past the seam, where the turn starts again.
         for (const double turn : {-kTurn_rad, kTurn_rad}) {
             const AngleRange turned{box.horizontal.lo + turn, box.horizontal.hi + turn};
             most = std::max(most, most_within(table, {box.vertical, turned}));

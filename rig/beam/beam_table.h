@@ -13,16 +13,16 @@
 //   type B   w = (sin V cos H, sin H, cos V cos H)    planes of one V share the line across
 //   type A   w = (sin V, cos V sin H, cos V cos H)    planes of one H share the line along
 //
-// This is how IESNA LM-63-2002, section 3, defines the angles. "Photometric zero", V = H = 0 of B
-// and C, is straight down: our axis. "Photometric horizontal", V = 90 degrees, H = 0, is our along.
-// Seen from above, H runs counterclockwise for C, which is to port, and clockwise for A and B, to
-// starboard. Type A is for lamps that shine horizontally (H = V = 0, with V = -90 degrees straight
-// down): the lamp is turned so that its V = H = 0 is the axis too, and what was up is along. So for
-// A and B alike, who looks the lamp's way from behind it, with along upwards, sees V grow upwards
-// and H grow to the right.
+// This is the definition of the angles in IESNA LM-63-2002, section 3. "Photometric zero", V = H =
+// 0 of B and C, is straight down: our axis. "Photometric horizontal", V = 90 degrees, H = 0, is our
+// along. Seen from above, H runs counterclockwise for C, which is to port, and clockwise for A and
+// B, to starboard. Type A is for lamps that shine horizontally (H = V = 0, with V = -90 degrees
+// straight down): the lamp is rotated so that its V = H = 0 is also the axis, and its up becomes
+// along. So for A and B alike, seen from behind the lamp with along upwards, V increases upwards
+// and H to the right.
 //
-// At V = 0 of type C, and where all planes of A and of B meet, I is what the plane of w says; files
-// have one value there in all planes.
+// At V = 0 of type C, and where all planes of A and of B meet, I is the value in the plane of w;
+// files have one value there in all planes.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,10 +36,10 @@ enum class TableAngles { TypeA, TypeB, TypeC };
 
 struct BeamTable {
     TableAngles angles = TableAngles::TypeC;
-    // Strictly rising. C: within 0 to pi. A and B: within -pi/2 to pi/2, two or more.
+    // Strictly increasing. C: within 0 to pi. A and B: within -pi/2 to pi/2, two or more.
     std::vector<double> vertical_rad;
-    // Strictly rising. C: 0 alone, the same all about, or from 0 to 2 pi, whose intensities are the
-    // same. A and B: within -pi/2 to pi/2, two or more.
+    // Strictly increasing. C: 0 alone, for the same all around, or from 0 to 2 pi, which have the
+    // same intensities. A and B: within -pi/2 to pi/2, two or more.
     std::vector<double> horizontal_rad;
     std::vector<double> intensity;  // [horizontal][vertical], vertical fastest; finite, 0 or more
 
@@ -50,8 +50,8 @@ struct BeamTable {
 
 [[nodiscard]] double table_intensity(const BeamTable& table, const Eigen::Vector3d& direction);
 
-// Bound of I over all directions within an angle of this one: its maximum over the smallest
-// rectangle of V and H that holds them all.
+// Upper bound of I over all directions within an angle of this one: its maximum over the smallest
+// rectangle of V and H that contains them.
 [[nodiscard]] double most_table_intensity(const BeamTable& table,
                                           const Eigen::Vector3d& direction,
                                           double within_rad);
@@ -86,8 +86,8 @@ struct TableEdge {
 };
 [[nodiscard]] std::vector<TableEdge> edges_of(const BeamTable& table);
 
-// The direction, of length 1, of two angles, and the angles of a direction: H of C from 0 to 2 pi;
-// of A and B, what turns about the poles from -pi to pi.
+// The unit direction of two angles, and the angles of a direction: H of C from 0 to 2 pi; for A and
+// B, the angle about the poles from -pi to pi.
 struct GoniometerAngles {
     double vertical_rad = 0.0;
     double horizontal_rad = 0.0;

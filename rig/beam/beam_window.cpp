@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of one face and one polarisation: p and q are n cos on either side for s, and cos/n for p.
+// For one face and one polarisation: p and q are n cos on either side for s, and cos/n for p.
 struct Face {
-    double by_cosine;  // its transmittance / (cos of the side where light arrives)
+    double by_cosine;  // its transmittance / (cos on the side where light arrives)
     double reflected;
 };
 
@@ -39,7 +39,7 @@ double transmittance_by_cosine(const BeamWindow& window, double cos_in_air) {
     double sum = 0.0;
     for (const bool is_s : {true, false}) {
         if (window.glass_index ==
-            1.0) {  // no glass at all: of its cosine, 0 along it, none is left
+            1.0) {  // no glass at all: at grazing incidence nothing of its cosine is left
             sum += face(1.0, cos_in_air, window.water_index, cos_water, is_s).by_cosine;
             continue;
         }

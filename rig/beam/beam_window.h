@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a flat window does to a beam that was measured, or computed, in air:
+// The effect of a flat window on a beam that was measured, or computed, in air:
 //
 //   I_w(theta_w) = T(theta) n^2 (cos theta_w / cos theta) I(theta),   sin theta = n sin theta_w
 //
@@ -11,13 +11,13 @@
 //   n^2 ..   the solid angle that shrinks: d(omega) / d(omega_w)
 //
 // Light 50 degrees off the axis in air is 35 off it in water, and the axis is n^2 = 1.8 times as
-// bright but for T. A cos^n of 100 degrees at half maximum becomes 80 wide, not 70: the factor
-// grows outwards. The flux is what it was, less what the faces reflect. Nothing comes out beyond
-// asin(1/n), some 48 degrees.
+// bright apart from T. A cos^n of 100 degrees at half maximum becomes 80 wide, not 70: the factor
+// grows outwards. The flux stays, less the faces' reflections. Nothing comes out beyond asin(1/n),
+// some 48 degrees.
 //
-// Limits: the window is perpendicular to the axis, wide, and so near to the lamp that the light
-// starts from the lamp all the same. The indices are those at kWindowIndex_nm, so that a beam has
-// one shape at all wavelengths: from 400 to 700 nm, n^2 differs from that by 1 % at most.
+// Limits: the window is perpendicular to the axis, wide, and so close to the lamp that the light
+// still starts at the lamp. The indices are those at kWindowIndex_nm, so that a beam has one shape
+// at all wavelengths: from 400 to 700 nm, n^2 differs from that by 1 % at most.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,25 +35,25 @@ struct BeamWindow {
     [[nodiscard]] bool operator==(const BeamWindow&) const = default;
 };
 
-// Where light that goes a certain way in water comes from.
+// The direction in air of light that travels in a given direction in water.
 struct LightInAir {
     Eigen::Vector3d direction;  // of length 1
     double factor = 0.0;        // I_w / I
 };
 
-// Of a direction in water, in the lamp's frame (z the axis), of any length. Nothing beyond
+// For a direction in water, in the lamp's frame (z the axis), of any length. Empty beyond
 // asin(1/n).
 [[nodiscard]] std::optional<LightInAir> in_air(const BeamWindow& window,
                                                const Eigen::Vector3d& in_water);
 
-// The factor at a cosine in air, 0 to 1; it grows from the axis outwards.
+// The factor at a cosine in air, 0 to 1; it increases from the axis outwards.
 [[nodiscard]] double window_factor(const BeamWindow& window, double cos_in_air);
 // T / cos(theta), which stays finite where both go to 0.
 [[nodiscard]] double transmittance_by_cosine(const BeamWindow& window, double cos_in_air);
 
 // asin(1/n).
 [[nodiscard]] double widest_in_water_rad(const BeamWindow& window);
-// theta of a theta_w up to that.
+// theta for a theta_w up to that.
 [[nodiscard]] double angle_in_air_rad(const BeamWindow& window, double in_water_rad);
 [[nodiscard]] double angle_in_water_rad(const BeamWindow& window, double in_air_rad);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which of the intervals between rising nodes a number lies in, asked many times: even bins know
-// the interval at their start, and few hold a node that lies beyond it.
+// Finds the interval between increasing nodes that contains a number, for many numbers: even bins
+// store the interval at their start, and few contain a node past it.
 //
 //   cell k     from nodes[k] to below nodes[k + 1]
 //
-// Below the first node it is the first cell, from the last one on the last.
+// Numbers below the first node are in the first cell, those from the last node on in the last.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class CellSearch {
         last_bin_ = static_cast<double>(bins - 1);
         bins_per_unit_ = 1.0 / width;
         for (std::size_t bin = 0; bin < bins; ++bin) {
-            // A node at the start of a bin, as all of even nodes are, is none beyond it.
+            // A node at the start of a bin, as with all even nodes, is not inside it.
             constexpr double kRounding = 1e-9;
             const double start = nodes_.front() + (static_cast<double>(bin) + kRounding) * width;
             const auto above = std::upper_bound(nodes_.begin() + 1, nodes_.end() - 1, start);

@@ -23,7 +23,7 @@ constexpr double kWidest_rad = 0.5 * std::numbers::pi;
 constexpr int kRings = 1800;  // midpoints, ten to a step
 constexpr int kTurns = 72;
 
-// The beam on rings about its axis: what cones can have of it, their mean, and all of it.
+// The beam on rings about its axis: its mean, which cones can match, and all of it.
 struct Rings {
     VectorXd theta_rad;
     VectorXd solid_angle_sr;
@@ -59,7 +59,7 @@ double half_angle_rad(int step) {
     return step * kFitStep_deg * kRadiansPerDegree;
 }
 
-// Normal equations of all cones there may be: G of their products, b of those with the beam.
+// Normal equations of all possible cones: G of their products, b of those with the beam.
 struct Equations {
     MatrixXd G;
     VectorXd b;
@@ -81,7 +81,7 @@ Equations equations_of(const Rings& rings) {
 
 struct Shares {
     VectorXd alpha;
-    double gain = 0.0;  // by how much they lower the integral
+    double gain = 0.0;  // by how much they reduce the integral
 };
 
 Shares shares_of(const Equations& all, const std::set<int>& steps) {
@@ -93,7 +93,7 @@ Shares shares_of(const Equations& all, const std::set<int>& steps) {
     return {.alpha = alpha, .gain = 2.0 * b.dot(alpha) - alpha.dot(G * alpha)};
 }
 
-// The best of the sets that differ from this one in `moving` alone, by up to `reach` steps.
+// The best of the sets that differ from this one only in `moving`, by up to `reach` steps.
 std::set<int> best_move(const Equations& all, const std::set<int>& from, int moving, int reach) {
     const auto steps = static_cast<int>(all.b.size());
     std::set<int> best = from;
@@ -122,7 +122,7 @@ ConeFit fit_cones(const Beam& beam, int count) {
     const auto steps = static_cast<int>(all.b.size());
     std::set<int> chosen;
     while (std::ssize(chosen) < count) {
-        const int none = 0;  // a cone that is not there yet may stand anywhere
+        const int none = 0;  // a cone that does not exist yet may be anywhere
         std::set<int> grown = best_move(all, chosen, none, steps);
         if (grown == chosen) break;
         for (int round = 0; round < kMostRounds; ++round) {

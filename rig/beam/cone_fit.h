@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sharp cones that come closest to a beam: of N cones about the axis, the half angles gamma_k
-// and shares alpha_k >= 0 of the flux that make
+// The sharp cones that best fit a beam: for N cones about the axis, the half angles gamma_k and
+// shares alpha_k >= 0 of the flux that minimise
 //
 //   integral of (I(w) - sum of alpha_k cos(theta) / (pi sin^2 gamma_k) [theta <= gamma_k])^2 dw
 //
-// small. Shares are by non-negative least squares. Half angles are multiples of kFitStep_deg: each
-// further cone is the one that helps most, then each in turn moves as long as that helps, so they
-// are a minimum that no single move betters, not always the least of all.
+// Shares come from non-negative least squares. Half angles are multiples of kFitStep_deg: each
+// further cone is the one that helps most, then each in turn moves as long as that helps. The
+// result is a minimum that no single move improves, not always the global one.
 //
 //   error   (the integral / integral of I^2)^(1/2): what no sum of these cones has
 #pragma once
@@ -21,7 +21,7 @@ namespace aphotic {
 inline constexpr double kFitStep_deg = 0.5;
 
 struct ConeFit {
-    std::vector<Cone> cones;  // weights by flux, the narrowest first; fewer where more do not help
+    std::vector<Cone> cones;  // weights by flux, the narrowest first; fewer if more do not help
     double error = 0.0;
 };
 

@@ -68,7 +68,7 @@ class ValueLines {
             fail_at_line(file_,
                          line_,
                          fmt::format("found {} after the last intensity; allowed: as many as Isym, "
-                                     "Mc and Ng ask for",
+                                     "Mc and Ng require",
                                      shown_word(word)));
         }
     }
@@ -83,7 +83,7 @@ void take_label(PhotometricFile& photometry, std::string_view keyword, std::stri
     if (!text.empty()) photometry.labels.push_back({std::string(keyword), printable(text)});
 }
 
-// The stored planes: Mc1 - 1, counted from 0, and how many.
+// The stored planes: Mc1 - 1, counted from 0, and their number.
 struct StoredPlanes {
     std::size_t first = 0;
     std::size_t count = 0;
@@ -104,13 +104,11 @@ StoredPlanes stored_planes(std::size_t symmetry, std::size_t planes) {
     }
 }
 
-// The angles that a symmetry asks for are there.
+// Checks that the angles required by a symmetry exist.
 void check_plane(const std::string& file, const FileNumber& angle, double wanted_deg) {
     if (angle.value == wanted_deg) return;
-    fail_number(file,
-                angle,
-                "a C angle",
-                fmt::format("{} degrees in this place, by Isym and Mc", wanted_deg));
+    fail_number(
+        file, angle, "a C angle", fmt::format("{} degrees here, by Isym and Mc", wanted_deg));
 }
 
 void check_symmetry_angles(const std::string& file,
@@ -140,7 +138,7 @@ std::size_t next_plane_count(ValueLines& lines, std::size_t symmetry) {
     return planes;
 }
 
-// The factor from values to candela, and what the file says of the lamps.
+// The factor from values to candela, and the file's data on the lamps.
 double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
     const std::string& file = lines.file();
     const double factor =
@@ -151,15 +149,14 @@ double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
         fail_number(file,
                     sets,
                     "sets of lamps",
-                    "1; of several, leave in the one that is fitted, for intensities are per "
-                    "1000 lm of it");
+                    "1; of several, keep the one that is installed, since intensities are per 1000 "
+                    "lm of it");
     }
     const FileNumber count = lines.number("the number of lamps");
     photometry.is_absolute = count.value < 0.0;
     static_cast<void>(count_of(file,
                                {std::abs(count.value), count.line},
-                               "the number of lamps, whose sign is minus where photometry is "
-                               "absolute",
+                               "the number of lamps, negative for absolute photometry",
                                1,
                                kMostLampsOfSet));
     take_label(photometry, "LAMP", lines.next("the type of lamps"));
@@ -185,7 +182,7 @@ std::vector<std::vector<double>> next_planes(ValueLines& lines,
     return columns;
 }
 
-// 0 where the steps differ, as the format has it.
+// 0 if the steps differ, as the format requires.
 std::string step_text(const std::vector<double>& angles_rad) {
     constexpr double kSame_deg = 1e-9;
     const double step_deg =
@@ -267,7 +264,7 @@ PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view by
         fail_number(file_name,
                     turn.back(),
                     "a C angle",
-                    "below 360 degrees, or the intensities of 0 there again");
+                    "below 360 degrees, or the intensities of 0 repeated");
     }
     std::vector<TurnPlane> given;
     for (std::size_t i = 0; i < columns.size(); ++i)

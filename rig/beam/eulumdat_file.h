@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// .ldt: EULUMDAT, the file of European photometry. One value a line:
+// .ldt: EULUMDAT, the European photometry format. One value per line:
 //
 //    1 manufacturer   2 type   3 Isym   4 Mc planes   5 their step   6 Ng angles   7 their step
 //    8 to 12 report, name, number, file, date   13 to 21 sizes   22 and 23 shares of flux in %
@@ -10,15 +10,15 @@
 //
 //   I = value x conversion factor x lumens / 1000        [cd]
 //
-// A negative number of lamps is absolute photometry: lumens are the luminaire's. All Mc angles are
-// listed, whatever planes are stored; those are, with Isym,
+// A negative number of lamps means absolute photometry: lumens are the luminaire's. All Mc angles
+// are listed, whichever planes are stored; Isym gives those:
 //
 //   0   all                              1   one, the same all about
 //   2   C0 to C180, Mc/2 + 1 planes      3   C270 over C0 to C90, Mc/2 + 1 planes
 //   4   C0 to C90, Mc/4 + 1 planes
 //
-// Several sets of lamps are a choice that the buyer has, and the file does not say which is fitted:
-// such a file is refused. Decimal commas are read. Gamma is V and C is H of LM-63's type C, C0
+// Several sets of lamps are a choice for the buyer, and the file does not say which is installed:
+// such a file is refused. Decimal commas are accepted. Gamma is V and C is H of LM-63's type C, C0
 // along; gamma may end anywhere: the light ends there.
 //
 // Sources: A. Stockmar, "EULUMDAT - ein Leuchtendatenformat für den europäischen
@@ -33,11 +33,11 @@
 
 namespace aphotic {
 
-// file_name stands in messages.
+// file_name is for messages.
 [[nodiscard]] PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view text);
 
-// Isym 1 or 0. Where no flux of lamps is known, absolute, with the table's own. Sizes, watts and
-// direct ratios are 0, unknown. Other types than C, and a dark table, are an InputError.
+// Isym 1 or 0. If the lamps' flux is unknown, absolute, with the table's own. Sizes, watts and
+// direct ratios are 0, for unknown. Types other than C, and a dark table, are an InputError.
 [[nodiscard]] std::string eulumdat_text(const PhotometricFile& photometry,
                                         const std::string& file_name);
 

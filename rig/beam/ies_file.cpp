@@ -20,7 +20,7 @@ constexpr std::size_t kMostTilts = 1000;
 constexpr std::size_t kMostLamps = 1'000'000;
 constexpr double kMostLumens = 1e12;
 
-// A file's lines, one after the other.
+// A file's lines, in order.
 class LineReader {
   public:
     explicit LineReader(std::string_view text) : rest_(text) {}
@@ -42,7 +42,7 @@ class LineReader {
     std::size_t line_ = 0;
 };
 
-// Numbers parted by blanks, commas and line ends.
+// Numbers separated by blanks, commas and line ends.
 class NumberReader {
   public:
     NumberReader(std::string file, std::string_view text, std::size_t first_line)
@@ -68,7 +68,7 @@ class NumberReader {
         fail_at_line(file_,
                      line_,
                      fmt::format("found {} after the last number; allowed: as many numbers as the "
-                                 "counts of angles ask for",
+                                 "counts of angles require",
                                  shown_word(word)));
     }
 
@@ -90,7 +90,7 @@ class NumberReader {
     std::size_t line_;
 };
 
-// The year of the edition, of a line that names one. A file of 1986 has text of any kind alone.
+// The year of the edition, from a line that names one. A file of 1986 has only free text.
 std::optional<int> edition_in(const std::string& file, std::size_t number, std::string_view line) {
     std::string name;
     for (const char c : lower_case(std::string(line))) {
@@ -135,7 +135,7 @@ void add_label(std::vector<PhotometricLabel>& labels, std::string_view line) {
     }
 }
 
-// What follows TILT= in a line that begins so.
+// The text after TILT= in a line that starts so.
 std::optional<std::string_view> tilt_in(std::string_view line) {
     constexpr std::string_view kTilt = "tilt";
     if (lower_case(std::string(line.substr(0, kTilt.size()))) != kTilt) return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<std::string_view> tilt_in(std::string_view line) {
     return without_blanks(line.substr(1));
 }
 
-// A table of factors by which the light changes as the lamp is tilted: what we read has none.
+// A table of factors for light over the lamp's tilt: we accept only constant ones.
 void pass_over_constant_tilt(NumberReader& numbers) {
     const std::string& file = numbers.file();
     static_cast<void>(numbers.next("the lamp's geometry"));
@@ -156,7 +156,7 @@ void pass_over_constant_tilt(NumberReader& numbers) {
         fail_number(file,
                     factor,
                     "the factor of a tilt (TILT)",
-                    "1, for a lamp whose light changes as it is tilted is not modelled");
+                    "1; lamps whose light changes with tilt are not modelled");
     }
 }
 
@@ -210,7 +210,7 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
 
 using Columns = std::vector<std::vector<double>>;
 
-// Which symmetry the horizontal angles of type C tell of.
+// The symmetry given by the horizontal angles of type C.
 void unfold_turn(BeamTable& table,
                  const std::string& file,
                  const std::vector<FileNumber>& horizontal,
@@ -232,8 +232,8 @@ void unfold_turn(BeamTable& table,
         if (columns.back() != columns.front()) {
             fail_at_line(file,
                          horizontal.back().line,
-                         "found other candela at 360 degrees than at 0; allowed: the same, for it "
-                         "is one plane");
+                         "found candela at 360 degrees that differ from those at 0; allowed: the "
+                         "same, since it is one plane");
         }
         return set_turn(table, planes);
     }
@@ -241,11 +241,11 @@ void unfold_turn(BeamTable& table,
     fail_at_line(
         file,
         horizontal.front().line,
-        fmt::format("horizontal angles: found {} to {} degrees; allowed for type C: 0 "
-                    "alone, 0 to 90, 0 to 180, 90 to 270, or 0 to 360, of which 360 may be "
-                    "missing after even steps",
-                    first,
-                    last));
+        fmt::format(
+            "horizontal angles: found {} to {} degrees; allowed for type C: 0 alone, 0 to 90, 0 to "
+            "180, 90 to 270, or 0 to 360 (360 may be omitted where steps are even)",
+            first,
+            last));
 }
 
 // -x of each angle x that is not 0, then the angles.
@@ -264,7 +264,7 @@ std::vector<Value> with_mirror_image(const std::vector<Value>& values) {
     return both;
 }
 
-// Types A and B: below the horizon and to the left as above it and to the right.
+// Types A and B: mirrors above the horizon to below it, and right to left.
 void unfold_quadrants(BeamTable& table, Columns columns) {
     if (table.vertical_rad.front() == 0.0) {
         table.vertical_rad = with_negatives(table.vertical_rad);
@@ -307,7 +307,7 @@ BeamTable next_table(NumberReader& numbers, const IesHeader& header) {
     return table;
 }
 
-// Lines of a width that every reader takes, words whole.
+// Lines short enough for every reader, with whole words.
 constexpr std::size_t kLineWidth = 100;
 
 class LineWriter {
@@ -329,7 +329,7 @@ class LineWriter {
     std::size_t width_ = 0;
 };
 
-// Words whole, on lines of [MORE] where one is full.
+// Whole words, continued on lines of [MORE] when one is full.
 void add_label(LineWriter& lines, const PhotometricLabel& label) {
     std::string line = fmt::format("[{}]", label.keyword);
     bool has_word = false;
@@ -348,7 +348,7 @@ void add_label(LineWriter& lines, const PhotometricLabel& label) {
     lines.end_line();
 }
 
-// Keywords of the standard stand as they are, others begin with _.
+// The standard's keywords are kept, others begin with _.
 std::string ies_keyword(const std::string& keyword) {
     constexpr std::array kKnown{"TEST",         "TESTLAB",     "ISSUEDATE",     "MANUFAC",
                                 "LUMCAT",       "LUMINAIRE",   "LAMPCAT",       "LAMP",
@@ -394,7 +394,7 @@ void check_sides(const BeamTable& table, const std::string& file_name) {
     if (table.vertical_rad.front() != 0.0 && table.horizontal_rad.front() != 0.0) return;
     throw InputError(
         "{}: found a table of type A or B that begins at 0; allowed in .ies: one that begins below "
-        "0, for what begins there is half of a symmetric one",
+        "0, since one that begins at 0 is half of a symmetric table",
         file_name);
 }
 
@@ -434,8 +434,8 @@ PhotometricFile parse_ies(const std::string& file_name, std::string_view bytes) 
     } else if (word != "none") {
         fail_at_line(file_name,
                      lines.line(),
-                     fmt::format("found TILT={}, a table of how the lamp's light changes as it is "
-                                 "tilted; allowed: TILT=NONE, or INCLUDE with factors of 1",
+                     fmt::format("found TILT={}, a table of the lamp's light over tilt; allowed: "
+                                 "TILT=NONE, or INCLUDE with factors of 1",
                                  shown_word(*tilt_word)));
     }
     const IesHeader header = next_header(numbers, edition, photometry);

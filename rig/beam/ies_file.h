@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// .ies: IESNA LM-63, the file of North American photometry.
+// .ies: IESNA LM-63, the North American photometry format.
 //
 //   IESNA:LM-63-2002            the edition: none in 1986, IESNA91, IESNA:LM-63-1995 or -2002,
 //                               IES:LM-63-2019
@@ -12,10 +12,10 @@
 //
 //   I = candela x multiplier x ballast factor x lamp factor        [cd]
 //
-// Numbers flow over lines, parted by blanks, commas or both. What stands in the place of the lamp
-// factor is one (the "ballast-lamp photometric factor") as far as 1995; it is "for future use" in
-// 2002 and a code of how the file was made in 2019 (1.1 for an accredited laboratory), which must
-// not be multiplied with. -1 lumens per lamp mean absolute photometry.
+// Numbers run across lines, separated by blanks, commas or both. The lamp factor's place holds one
+// (the "ballast-lamp photometric factor") up to 1995; in 2002 it is "for future use", and in 2019 a
+// code for how the file was made (1.1 for an accredited laboratory), which must not be multiplied
+// in. -1 lumens per lamp mean absolute photometry.
 //
 // type 1 is C, 2 is B, 3 is A (rig/beam/beam_table.h). V and H are in degrees. By the range of H, a
 // table of type C is
@@ -27,7 +27,7 @@
 // A table of type A or B that begins at V = 0 is mirrored below, one that begins at H = 0 to the
 // left. V may end anywhere: the light ends there.
 //
-// Sizes and watts are passed over.
+// Sizes and watts are ignored.
 //
 // Sources: IESNA LM-63-2002; for the lamp factor of 1986 to 1995, I. Ashdown's IESNA.H (1998); for
 // the codes of 2019, PhotomPy 0.3.1.
@@ -40,12 +40,11 @@
 
 namespace aphotic {
 
-// file_name stands in messages.
+// file_name is for messages.
 [[nodiscard]] PhotometricFile parse_ies(const std::string& file_name, std::string_view text);
 
-// Of LM-63-2002, whose readers are everywhere: type kept, symmetries unfolded, absolute
-// where no flux of lamps is known. Keywords that the edition asks for say "not stated" where
-// nothing is known.
+// Written as LM-63-2002, which every reader knows: type kept, symmetries unfolded, absolute if the
+// lamps' flux is unknown. Keywords that the edition requires say "not stated" if nothing is known.
 [[nodiscard]] std::string ies_text(const PhotometricFile& photometry, const std::string& file_name);
 
 }  // namespace aphotic

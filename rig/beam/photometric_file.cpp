@@ -30,11 +30,9 @@ std::optional<Format> format_by_ending(std::string_view name) {
 
 Format format_of(const std::string& file_name) {
     if (const auto format = format_by_ending(file_name)) return *format;
-    throw InputError(
-        "{}: found a name that ends otherwise; allowed for a measured "
-        "beam: {}",
-        printable(file_name),
-        kPhotometricEndings);
+    throw InputError("{}: found another file type; allowed for a measured beam: {}",
+                     printable(file_name),
+                     kPhotometricEndings);
 }
 
 PhotometricFile parse_by_ending(const std::string& file_name, std::string_view text) {
@@ -55,12 +53,12 @@ PhotometricFile parse_photometric_file(const std::string& file_name, std::string
     PhotometricFile file = parse_by_ending(file_name, text);
     const double largest = largest_intensity(file.table);
     if (largest > 0.0 && !std::isnormal(largest)) {
-        throw InputError(fmt::format(
-            "{}: found no intensity above {:.3g}, by the file's own factors; allowed: a "
-            "largest one of {:.3g} or more, for doubles lose digits below",
-            printable(file_name),
-            largest,
-            std::numeric_limits<double>::min()));
+        throw InputError(
+            fmt::format("{}: found no intensity above {:.3g} after the file's factors; allowed: a "
+                        "largest one of {:.3g} or more, since doubles lose digits below",
+                        printable(file_name),
+                        largest,
+                        std::numeric_limits<double>::min()));
     }
     return file;
 }

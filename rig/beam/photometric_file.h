@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files of measured beams, by the ending of their names:
+// Files of measured beams, by their extension:
 //
 //   .ies   IESNA LM-63 of 1986, 1991, 1995, 2002 and 2019           candela
 //   .ldt   EULUMDAT (Stockmar 1990), absolute as DIAL agreed on it  candela
 //   .csv   ours: theta_deg,intensity or theta_deg,phi_deg,intensity  as written
 //
-// rig/beam/ies_file.h, rig/beam/eulumdat_file.h and rig/beam/beam_csv.h say how each is read and
-// written. In all, angle 0 about the axis is our along, and the direction in which it grows is that
-// of LM-63's type C (rig/beam/beam_table.h).
+// rig/beam/ies_file.h, rig/beam/eulumdat_file.h and rig/beam/beam_csv.h describe how each is read
+// and written. In all of them, angle 0 about the axis is our along, and it increases in the
+// direction of LM-63's type C (rig/beam/beam_table.h).
 //
-// What is read is what the file says of the lamp in the medium that it was measured in: air, most
-// often. An error is an InputError "file:line: what was found; allowed: ...".
+// The table describes the lamp in the medium in which it was measured: most often air. An error is
+// an InputError "file:line: what was found; allowed: ...".
 #pragma once
 
 #include "rig/beam/beam_table.h"
@@ -25,7 +25,8 @@
 
 namespace aphotic {
 
-// What a file says besides: "[LUMCAT] T-100" of .ies, "# key: text" of .csv. keyword may be empty.
+// Further information in the file: "[LUMCAT] T-100" of .ies, "# key: text" of .csv. keyword may be
+// empty.
 struct PhotometricLabel {
     std::string keyword;
     std::string text;  // UTF-8, one line
@@ -35,8 +36,8 @@ struct PhotometricLabel {
 
 struct PhotometricFile {
     BeamTable table;  // of the lamp as it was measured
-    // What the file states for all lamps; none of .csv, where it states none, and of absolute
-    // photometry, which knows of no lamp apart from the luminaire.
+    // The file's flux for all lamps; empty for .csv without one, and for absolute photometry, which
+    // does not separate the lamp from the luminaire.
     std::optional<double> luminous_flux_lm;
     bool is_absolute = false;
     std::vector<PhotometricLabel> labels;
@@ -46,24 +47,24 @@ struct PhotometricFile {
 
 inline constexpr std::size_t kMostPhotometricBytes = std::size_t{64} << 20U;
 
-// file_name stands in messages; its ending says the format.
+// file_name is for messages; its extension gives the format.
 [[nodiscard]] PhotometricFile parse_photometric_file(const std::string& file_name,
                                                      std::string_view text);
 [[nodiscard]] PhotometricFile read_photometric_file(const std::filesystem::path& file);
 
-// The same shape with its largest intensity from 0.5 to below 1, by a power of two: no digit
-// changes, and no sum or product of intensities overflows, or underflows unless it is negligible.
+// The same shape with its largest intensity from 0.5 to below 1, scaled by a power of two: no digit
+// changes, and sums and products of intensities cannot overflow, and underflow only if negligible.
 // Intensities under 2.2e-308 of the largest lose digits that are negligible too. Reading refuses
-// tables whose largest intensity is itself so small, for doubles have lost its digits.
+// tables whose largest intensity is itself that small, since doubles have lost its digits.
 [[nodiscard]] BeamTable normalised(BeamTable table);
 
-// Whether a name ends as these files do.
+// Whether a name has one of these extensions.
 [[nodiscard]] bool is_photometric_file_name(std::string_view name);
 inline constexpr std::string_view kPhotometricEndings = ".ies, .ldt or .csv";
 
-// As the ending says. Read again, .ies and .csv give the same table to the last bit. What a format
-// cannot say is an InputError: .ldt and .csv hold type C alone, for a table over other angles would
-// have to be interpolated.
+// In the extension's format. Read again, .ies and .csv give exactly the same table. What a format
+// cannot express is an InputError: .ldt and .csv hold type C only, and a table over other angles
+// would have to be interpolated.
 [[nodiscard]] std::string photometric_text(const PhotometricFile& photometry,
                                            const std::string& file_name);
 void write_photometric_file(const PhotometricFile& photometry, const std::filesystem::path& file);

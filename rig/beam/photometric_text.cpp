@@ -120,7 +120,7 @@ double intensity_of(const std::string& file,
         fail_number(file,
                     number,
                     what,
-                    fmt::format("up to {:.3g}, for the file's factors multiply it by {:.3g}",
+                    fmt::format("up to {:.3g}, since the file's factors multiply it by {:.3g}",
                                 std::numeric_limits<double>::max() / factor,
                                 factor));
     }
@@ -154,7 +154,7 @@ void check_angles(const std::string& file,
         }
         if (angle.value < next_deg) {
             fail_number(
-                file, angle, what, fmt::format("angles that rise, here {} or more", next_deg));
+                file, angle, what, fmt::format("increasing angles, here {} or more", next_deg));
         }
         next_deg = angle.value + kLeastAngleStep_deg;
     }
@@ -225,7 +225,7 @@ std::string degrees_text(double angle_rad) {
         const double deg = *finite_decimal(fmt::format("{:.{}g}", near_deg, digits));
         if (radians_of(deg) == angle_rad) return fmt::format("{}", deg);
     }
-    // Degrees are finer than radians in places, and the division may miss by a step or two.
+    // Degrees are finer than radians in places, and the division may be off by a step or two.
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::array<double, 2> around{near_deg, near_deg};
     for (int step = 0; step < 4; ++step) {

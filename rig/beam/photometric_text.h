@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the readers and writers of rig/beam/photometric_file.h share: numbers with their lines,
-// angles in degrees that become radians and come back, and planes of type C that become a whole
-// turn.
+// Shared by the readers and writers of rig/beam/photometric_file.h: numbers with their lines,
+// angles converted between degrees and radians, and planes of type C expanded to a full turn.
 #pragma once
 
 #include "rig/beam/beam_table.h"
@@ -15,13 +14,13 @@
 
 namespace aphotic {
 
-// Of one table. A file of 0.25 by 0.5 degrees has 519,841.
+// For one table. A file of 0.25 by 0.5 degrees has 519,841.
 inline constexpr std::size_t kMostTableNodes = 4'000'000;
 
-// Two angles of a table are no closer.
+// The least distance between two angles of a table.
 inline constexpr double kLeastAngleStep_deg = 1e-6;
 
-// UTF-8 of a text that is UTF-8 or else Latin-1; without a byte order mark.
+// The text as UTF-8, from UTF-8 or else Latin-1; without a byte order mark.
 [[nodiscard]] std::string utf8_of(std::string_view text);
 
 [[nodiscard]] std::string_view without_blanks(std::string_view text);
@@ -31,7 +30,7 @@ inline constexpr double kLeastAngleStep_deg = 1e-6;
 
 [[nodiscard]] std::optional<double> finite_decimal(std::string_view word);
 
-// A number as a message places it: "file:line: what: found ...; allowed: ...".
+// An error about a number: "file:line: what: found ...; allowed: ...".
 struct FileNumber {
     double value = 0.0;
     std::size_t line = 0;
@@ -62,12 +61,13 @@ struct FileNumber {
                                   std::string_view what,
                                   double factor);
 
-// A file's factor of all intensities, above 0, times the others: no overflow, and no digit lost.
+// A file's factor for all intensities, above 0, times the others, without overflow or loss of
+// digits.
 [[nodiscard]] double product_of_factors(const std::string& file,
                                         const FileNumber& last,
                                         double others);
 
-// Strictly rising and within a range.
+// Strictly increasing and within a range.
 void check_angles(const std::string& file,
                   const std::vector<FileNumber>& angles_deg,
                   std::string_view what,
@@ -80,23 +80,23 @@ struct TurnPlane {
     std::vector<double> intensity;
 };
 
-// Adds the mirror image of each plane in the plane through the axis at mirror_deg, and at 180
+// Adds the mirror image of each plane about the plane through the axis at mirror_deg, and at 180
 // degrees from it.
 [[nodiscard]] std::vector<TurnPlane> mirrored(std::vector<TurnPlane> planes, double mirror_deg);
 
-// Whether the step from the last of these angles to 360 degrees is the one between all of them, so
-// that the plane at 360, which is the one at 0, was but left out.
+// Whether the step from the last of these angles to 360 degrees equals all others, so that the
+// plane at 360, equal to that at 0, was only omitted.
 [[nodiscard]] bool closes_evenly(const std::vector<FileNumber>& angles_deg);
 
-// The planes in order from 0 to 360 degrees, both there. Between the last and the first of the turn
-// lies nothing but what is linear between them, which says what is at 0 where no plane is.
+// The planes in order from 0 to 360 degrees, both included. Between the last and the first plane of
+// the turn, values are linear, which gives the value at 0 if no plane is there.
 void set_turn(BeamTable& table, std::vector<TurnPlane> planes);
 
 [[nodiscard]] double radians_of(double deg);
 [[nodiscard]] std::vector<double> radians_of(const std::vector<FileNumber>& angles_deg);
 
-// The shortest text of degrees that is read as this angle again, to the last bit. Of an angle that
-// is that of no degrees, the nearest.
+// The shortest text in degrees that reads back as exactly this angle; if no degrees do, the
+// nearest.
 [[nodiscard]] std::string degrees_text(double angle_rad);
 
 }  // namespace aphotic

@@ -24,7 +24,7 @@ double chord_of(double theta_rad) {
     return 2.0 * std::sin(0.5 * theta_rad);
 }
 
-// Chebyshev's points of the first kind, of 0 to 1: none is an end.
+// Chebyshev's points of the first kind, on 0 to 1: none is an end.
 double chebyshev_point(std::size_t i) {
     const double share = (static_cast<double>(i) + 0.5) / kProfileOrder;
     return 0.5 - 0.5 * std::cos(std::numbers::pi * share);
@@ -49,7 +49,7 @@ double polynomial(const Coefficients& c, double x) {
     return value;
 }
 
-// Angles off the axis where the beam bends or ends, in air behind a window, rising from 0.
+// Angles off the axis where the beam bends or ends, in air behind a window, increasing from 0.
 std::vector<double> breaks_of(const Beam& beam) {
     std::vector<double> breaks_rad{0.0};
     if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) {
@@ -137,7 +137,7 @@ RoundProfile::RoundProfile(const Beam& beam)
             static_cast<std::size_t>(region),
             0);
     }
-    // Beyond, there is nothing.
+    // Beyond, there is no light.
     const double end = ends_.back();
     const bool ends_in_step = std::ranges::any_of(
         steps, [&](double step_rad) { return std::abs(chord_of(step_rad) - end) < 1e-9; });

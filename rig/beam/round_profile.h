@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam that is the same all about its axis, as polynomials in one variable: cones with their
+// A beam that is the same all around its axis, as polynomials in one variable: cones with their
 // exponents and soft edges, round tables, and either behind a window, whose factor is folded in.
 //
 //   I(theta) = p_k(q),      q = 2 sin(theta / 2) = sqrt(2 - 2 cos(theta))
@@ -9,8 +9,8 @@
 // k      the piece that q is in: pieces end at each edge and kink, and where a polynomial of degree
 //        kProfileOrder - 1 would be off by more than kProfileError of the largest I in the piece
 //
-// q is as smooth as theta and costs a root. Pieces between two edges are one region: a direction
-// that is asked for as though an edge were not there goes on by its own region's last polynomial.
+// q is as smooth as theta and costs one root. Pieces between two edges form a region: a direction
+// evaluated as if an edge were not there uses its own region's last polynomial.
 #pragma once
 
 #include "base/lanes.h"
@@ -28,13 +28,13 @@ inline constexpr double kProfileError = 1e-9;
 
 class RoundProfile {
   public:
-    // Of a beam that is round: is_round().
+    // For a round beam: is_round().
     explicit RoundProfile(const Beam& beam);
 
     // By the cosine off the axis in water.
     [[nodiscard]] double at(double cosine) const;
     [[nodiscard]] Lanes at(const Lanes& cosine) const;
-    // As though no edge lay between it and the direction of another cosine.
+    // As if no edge lay between it and the direction of another cosine.
     [[nodiscard]] double continued(double cosine, double cosine_from) const;
 
   private:
@@ -44,14 +44,14 @@ class RoundProfile {
         std::array<double, kProfileOrder> c{};  // in 0 to 1 over the piece
         std::size_t region = 0;
     };
-    // None where a window lets nothing out, and behind the lamp beyond the last piece.
+    // Empty where a window transmits nothing, and behind the lamp past the last piece.
     [[nodiscard]] std::optional<double> chord(double cosine) const;
     [[nodiscard]] std::size_t piece_at(double q) const;
     [[nodiscard]] static double value(const Piece& piece, double q);
 
     double window_index_ = 1.0;  // of the water, behind a window
     bool has_window_ = false;
-    std::vector<double> ends_;  // of pieces, rising
+    std::vector<double> ends_;  // of pieces, increasing
     std::vector<Piece> pieces_;
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 using std::numbers::pi;
 
-// atan(t) of |t| <= 7/16, as t minus t^3 times this of t^2: fdlibm's s_atan.c (Sun Microsystems,
-// 1993), whose polynomial is right to 2^-58. Even and odd degrees apart are two short chains.
+// atan(t) for |t| <= 7/16, as t minus t^3 times this polynomial in t^2: fdlibm's s_atan.c (Sun
+// Microsystems, 1993), accurate to 2^-58. Even and odd powers apart are two short chains.
 Pack arc_tangent(const Pack& t) {
     constexpr std::array kByDegree{3.33333333333329318027e-01,
                                    -1.99999999998764832476e-01,
@@ -36,8 +36,8 @@ Pack arc_tangent(const Pack& t) {
     return t - t * t2 * (kByDegree[0] + t4 * even + t2 * odd);
 }
 
-// atan2(y, x), of length r. Half the angle to the nearer axis has the tangent lo / (r + hi), of
-// no more than tan(pi / 8).
+// atan2(y, x), for length r. Half the angle to the nearer axis has the tangent lo / (r + hi), at
+// most tan(pi / 8).
 Pack angle_of(const Pack& y, const Pack& x, const Pack& r) {
     namespace simd = std::experimental;
     const Pack across = simd::abs(y);
@@ -51,7 +51,7 @@ Pack angle_of(const Pack& y, const Pack& x, const Pack& r) {
     return angle;
 }
 
-// V and H, as angles_of().
+// V and H, as in angles_of().
 std::array<Pack, 2> pack_angles(TableAngles type, const PackVector& direction, const Pack& length) {
     const auto& [x, y, z] = direction;
     if (type == TableAngles::TypeC) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A measured beam (rig/beam/beam_table.h) made ready to be asked for many directions:
+// A measured beam (rig/beam/beam_table.h) prepared for many directions:
 //
 //   I = (1 - h) ((1 - v) I00 + v I01) + h ((1 - v) I10 + v I11)
 //
 // v, h   how far along the cell of the table both angles V and H are, 0 to 1
 //
-// as table_intensity() has it, but for the angles: cells are found without a search
-// (rig/beam/cell_search.h), and both angles are arc tangents of packs, right to kCellAngle_rad.
-// Within that of its ends a table goes on. So I is right to its slope times that, where
-// std::atan2 has a few times less: of a table in whole degrees, to 1.2e-13 of the peak where it
-// falls from that to 0 in one cell. That is 1e-6 of I itself down to 1.2e-7 of the peak, and in all
-// cells that fall less steeply further down.
+// as in table_intensity(), except for the angles: cells are found without a search
+// (rig/beam/cell_search.h), and both angles are arc tangents of packs, accurate to kCellAngle_rad.
+// Within that of its ends a table continues. The error of I is thus its slope times that, while
+// that of std::atan2 is a few times smaller: for a table in whole degrees, 1.2e-13 of the peak
+// where I falls from the peak to 0 in one cell. That is 1e-6 of I itself down to 1.2e-7 of the
+// peak, and in all cells that fall less steeply further down.
 #pragma once
 
 #include "base/lanes.h"
@@ -26,10 +26,10 @@ inline constexpr double kCellAngle_rad = 2e-15;
 
 class TableCells {
   public:
-    // Of a table that is not round.
+    // For a table that is not round.
     explicit TableCells(const BeamTable& table);
 
-    // Of directions in the lamp's frame, of these lengths.
+    // For directions in the lamp's frame, of these lengths.
     [[nodiscard]] Lanes at(const LaneVector& direction, const Lanes& length) const;
 
   private:

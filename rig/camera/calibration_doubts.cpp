@@ -18,7 +18,7 @@ std::string doubt_of_centre(const LensModel& lens, const Vector2d& size_px) {
     const Vector2d middle_px = 0.5 * size_px;
     const Vector2d off = (lens.centre_px - middle_px).cwiseAbs().cwiseQuotient(size_px);
     if (off.maxCoeff() <= kUsualShare) return "";
-    // 0, or 0.5 where a tool's first pixel is at 0, or a share of the image.
+    // 0, or 0.5 if a tool's first pixel is at 0, or a fraction of the image.
     const bool is_in_corner = lens.centre_px.cwiseAbs().maxCoeff() <= 1.5;
     return fmt::format(
         "principal point: found {:g}, {:g} in an image of {:g} x {:g}; usual: near the middle, "
@@ -29,7 +29,7 @@ std::string doubt_of_centre(const LensModel& lens, const Vector2d& size_px) {
         size_px.y(),
         middle_px.x(),
         middle_px.y(),
-        is_in_corner ? "; is it given from the middle, as a share of the image, or not at all?"
+        is_in_corner ? "; is it relative to the middle, a fraction of the image's size, or missing?"
                      : "; are the calibration and the images of the same size?");
 }
 
@@ -37,9 +37,10 @@ std::string doubt_of_aspect(const LensModel& lens) {
     constexpr double kMostRatio = 2.0;
     const double ratio = lens.focal_px.x() / lens.focal_px.y();
     if (std::max(ratio, 1.0 / ratio) <= kMostRatio) return "";
-    return fmt::format("focal lengths: found {:g} and {:g} pixels; usual: equal to a few per cent",
-                       lens.focal_px.x(),
-                       lens.focal_px.y());
+    return fmt::format(
+        "focal lengths: found {:g} and {:g} pixels; usual: equal within a few per cent",
+        lens.focal_px.x(),
+        lens.focal_px.y());
 }
 
 std::string doubt_of_field(const LensModel& lens, double width_px) {
@@ -52,7 +53,7 @@ std::string doubt_of_field(const LensModel& lens, double width_px) {
     const double most_deg = lens.is_fisheye ? kMostOfFisheye_deg : kMost_deg;
     if (field_deg >= kLeast_deg && field_deg <= most_deg) return "";
     return fmt::format(
-        "focal length: found {:g} pixels, which make a field of {:.3g} degrees across {:g} pixels; "
+        "focal length: found {:g} pixels, a field of view of {:.3g} degrees across {:g} pixels; "
         "usual: {:g} to {:g} degrees; is it in millimetres?",
         lens.focal_px.x(),
         field_deg,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a calibration may hold by mistake, though a lens of these numbers can be worked out: each is
-// a sentence with the number, what is usual, and what the cause may be.
+// Likely mistakes in a calibration that can nevertheless be computed: each is a sentence with the
+// number, the usual range and a possible cause.
 //
 //   the principal point       further from the image's middle than 20 % of its width or height
 //   fx / fy                   below 0.5 or over 2

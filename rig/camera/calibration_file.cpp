@@ -67,7 +67,8 @@ CameraCalibration read_kalibr_calibration(const CalibrationKeys& keys) {
     const std::vector<std::string> cameras = cameras_of(keys);
     if (cameras.size() > 1) {
         keys.fail(cameras[1],
-                  fmt::format("found beside {}; allowed: one camera, that of the rig", cameras[0]));
+                  fmt::format("found together with {}; allowed: one camera, that of the rig",
+                              cameras[0]));
     }
     const CalibrationKeys camera = keys.map(cameras.front());
     CameraCalibration made;
@@ -145,7 +146,7 @@ void require_text(const std::string& file_name, std::string_view text) {
     if (is_cameras_bin(text)) {
         throw InputError(
             "{}: found COLMAP's cameras.bin, which is binary; allowed: its cameras.txt, which "
-            "COLMAP makes of it: colmap model_converter --input_path MODEL --output_path TEXT "
+            "COLMAP writes with: colmap model_converter --input_path MODEL --output_path TEXT "
             "--output_type TXT",
             file_name);
     }
@@ -153,7 +154,7 @@ void require_text(const std::string& file_name, std::string_view text) {
     if (kind.empty() && text.find('\0') == std::string_view::npos) return;
     throw InputError("{}: found {}; allowed, as text: {}",
                      file_name,
-                     kind.empty() ? "zero bytes, which no text has" : kind,
+                     kind.empty() ? "zero bytes" : kind,
                      kKnownCalibrations);
 }
 
@@ -164,9 +165,9 @@ void require_within(
         "{}: {}: found {}; allowed: a number from {} to {}", file_name, what, value, least, most);
 }
 
-// Numbers with which the lens can be worked out, whatever their format.
+// Numbers that any format's lens can be computed with.
 void require_sound(const std::string& file_name, const LensModel& lens) {
-    // What focal_length_mm over pixel_pitch_um can be.
+    // The range of focal_length_mm over pixel_pitch_um.
     constexpr double kLeastFocal_px = 1e-3;
     constexpr double kMostFocal_px = 1e10;
     constexpr double kMost = 1e9;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Camera calibrations of other tools, told apart by what a file holds:
+// Other tools' camera calibrations, recognised by their contents:
 //
 //   FileStorage of OpenCV (YAML, XML, JSON), camera_info of ROS   rig/camera/opencv_calibration.h
 //   camchain of Kalibr                                            rig/camera/calibration_file.cpp
 //   cameras.txt of COLMAP, calibration.yaml of calibmar           rig/camera/colmap_calibration.h
 //   calibration in XML of Metashape                               rig/camera/calibration_file.cpp
 //
-// Each of these headers says where the centre of the first pixel is: here it is (0.5, 0.5). A file
-// says one camera. An error is an InputError "file:line: key: what was found; allowed: ...".
+// Each of these headers states where the centre of the first pixel is: here it is (0.5, 0.5). A
+// file describes one camera. An error is an InputError "file:line: key: what was found; allowed:
+// ...".
 #pragma once
 
 #include "rig/camera/lens_model.h"
@@ -23,9 +24,9 @@
 
 namespace aphotic {
 
-// A port but for its glass, of which a calibration tells no more than one index.
+// A port without its glass, for which a calibration gives only one index.
 struct CalibratedPort {
-    double distance_m = 0.0;  // as of PortWindow, in the sled's frame
+    double distance_m = 0.0;  // as in PortWindow, in the sled's frame
     double thickness_m = 0.0;
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
     std::optional<Dome> dome{};
@@ -42,10 +43,10 @@ struct CameraCalibration {
     bool operator==(const CameraCalibration&) const = default;
 };
 
-// OpenCV may put every corner that it found beside the camera.
+// The limit allows for OpenCV's list of every corner that it found.
 inline constexpr std::size_t kMostCalibrationBytes = std::size_t{2} << 20U;
 
-// file_name stands in messages. What is read is in range, but need not hold all over the image:
+// file_name is for messages. Values are in range, but need not be valid over the whole image:
 // lens_model.h.
 [[nodiscard]] CameraCalibration parse_calibration(const std::string& file_name,
                                                   std::string_view text);

@@ -31,15 +31,15 @@ constexpr std::size_t kMostLevels = 16;
 void require_shallow(const std::string& file_name, std::size_t line, std::size_t level) {
     if (level <= kMostLevels) return;
     fail_at_line(
-        file_name, line, "found values in more than {} levels; allowed: fewer", kMostLevels);
+        file_name, line, "found values nested more than {} deep; allowed: less", kMostLevels);
 }
 
 std::size_t line_of(const YAML::Mark& mark) {
     return mark.is_null() ? 1 : static_cast<std::size_t>(mark.line) + 1;
 }
 
-// The one document of a file. Aliases, which no calibration has, would let few bytes stand for any
-// number of values.
+// The one document of a file. Aliases, which no calibration has, would let a few bytes expand to
+// any number of values.
 class YamlReader : public YAML::EventHandler {
   public:
     explicit YamlReader(const std::string& file_name) : file_name_(file_name) {}
@@ -54,7 +54,7 @@ class YamlReader : public YAML::EventHandler {
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add_text(mark, ""); }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        fail_at_line(file_name_, line_of(mark), "found an alias; allowed: values themselves");
+        fail_at_line(file_name_, line_of(mark), "found an alias; allowed: plain values");
     }
     void OnScalar(const YAML::Mark& mark,
                   const std::string&,
@@ -80,7 +80,7 @@ class YamlReader : public YAML::EventHandler {
   private:
     struct Open {
         CalibrationValue value;
-        std::optional<std::string> key{};  // of a map: that of the value to come
+        std::optional<std::string> key{};  // of a map: that of the next value
     };
 
     void open(const YAML::Mark& mark, Kind kind) {
@@ -116,7 +116,7 @@ class YamlReader : public YAML::EventHandler {
     CalibrationValue root_;
 };
 
-// Lines of places that are asked for from first to last.
+// Line numbers of offsets requested in increasing order.
 class LineCount {
   public:
     explicit LineCount(std::string_view text) : text_(text) {}
@@ -174,7 +174,7 @@ CalibrationValue parse_calibration_yaml(const std::string& file_name, std::strin
         while (parser.HandleNextDocument(reader)) {
         }
     } catch (const YAML::Exception& error) {
-        fail_at_line(file_name, line_of(error.mark), "is not YAML: {}", printable(error.msg));
+        fail_at_line(file_name, line_of(error.mark), "not valid YAML: {}", printable(error.msg));
     }
     if (reader.root().kind != Kind::Map) {
         throw InputError(
@@ -194,7 +194,7 @@ CalibrationValue parse_calibration_xml(const std::string& file_name, std::string
                              pugi::encoding_utf8);
     LineCount lines(text);
     if (!result)
-        fail_at_line(file_name, lines.at(result.offset), "is not XML: {}", result.description());
+        fail_at_line(file_name, lines.at(result.offset), "not valid XML: {}", result.description());
     return value_of(document.document_element(), lines, file_name, 1);
 }
 
@@ -219,8 +219,7 @@ const CalibrationValue* CalibrationKeys::find(std::string_view key) const {
     for (const CalibrationValue& value : map_.values) {
         if (lower_case(value.name) != wanted) continue;
         if (found != nullptr) {
-            fail_at_line(
-                file_name_, value.line, "{}: found a second time; allowed: once", path_of(key));
+            fail_at_line(file_name_, value.line, "{}: duplicate key; allowed: once", path_of(key));
         }
         found = &value;
     }
@@ -277,7 +276,7 @@ std::vector<double> CalibrationKeys::numbers(std::string_view key) const {
     for (const std::string_view word : calibration_words(value.text))
         all.push_back(finite(key, word));
     for (const CalibrationValue& item : value.values) {
-        if (item.kind != Kind::Text) fail(key, "found lists within a list; allowed: numbers");
+        if (item.kind != Kind::Text) fail(key, "found nested lists; allowed: numbers");
         all.push_back(finite(key, item.text));
     }
     return all;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Keys and values of a calibration in YAML, JSON (which is YAML) or XML, and what its readers ask
-// of them. All else that a file holds is left alone. Names are told apart without case: OpenCV
-// wrote Camera_Matrix before it wrote camera_matrix.
+// Keys and values of a calibration in YAML, JSON (which is YAML) or XML, as its readers need them.
+// Everything else in the file is ignored. Names are compared without case: OpenCV wrote
+// Camera_Matrix before it wrote camera_matrix.
 //
-// Values within values without end, aliases and further documents end in an InputError.
+// Endlessly nested values, aliases and further documents are an InputError.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct CalibrationValue {
     std::size_t line = 0;
 };
 
-// A map. %YAML:1.0 of OpenCV and its tags pass.
+// A map. %YAML:1.0 of OpenCV and its tags are accepted.
 [[nodiscard]] CalibrationValue parse_calibration_yaml(const std::string& file_name,
                                                       std::string_view text);
 
@@ -31,10 +31,10 @@ struct CalibrationValue {
 [[nodiscard]] CalibrationValue parse_calibration_xml(const std::string& file_name,
                                                      std::string_view text);
 
-// Between blanks and line ends.
+// Without surrounding blanks and line ends.
 [[nodiscard]] std::vector<std::string_view> calibration_words(std::string_view text);
 
-// A map, whose errors name file, line and key.
+// A map whose errors name file, line and key.
 class CalibrationKeys {
   public:
     // Both are kept by reference.
@@ -49,7 +49,7 @@ class CalibrationKeys {
     [[nodiscard]] double number_or(std::string_view key, double absent) const;
     // Pixels across or along an image.
     [[nodiscard]] int size(std::string_view key) const;
-    // Of a list, or of blank-separated words, as in XML.
+    // From a list, or from blank-separated words, as in XML.
     [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::string word(std::string_view key,

@@ -18,7 +18,7 @@
 
 namespace aphotic {
 
-// What the camera's files hold, as it was set for the survey; none: not told.
+// The camera's settings for the survey's files; empty for unknown.
 struct Readout {
     std::string bayer{};  // "RGGB", "BGGR", "GRBG", "GBRG" or "mono"
     std::optional<double> black_level_dn{};
@@ -26,19 +26,19 @@ struct Readout {
     std::optional<double> exposure_ms{};
     std::optional<double> iso{};
     std::optional<double> f_number{};
-    // Of EMVA 1288, for simulated surveys and for the noise of real ones.
+    // As in EMVA 1288, for simulated surveys and for the noise of real ones.
     std::optional<double> gain_dn_per_e{};
     std::optional<double> read_noise_e{};
     std::optional<double> saturation_e{};
 };
 
-// What an altitude of the navigation is: along the axis of the frame that pitch and roll tilt, the
-// vertical height, or the distance to the nearest point of the floor.
+// How navigation measures an altitude: along the axis of the frame that pitch and roll tilt,
+// vertically, or to the nearest point of the floor.
 enum class AltitudeIs { Axis, Plumb, Nearest };
 inline constexpr std::array<std::string_view, 3> kAltitudeWords{"axis", "plumb", "nearest"};
 
-// How the pose that the navigation tells is the camera's (survey/navigation/vehicle_pose.h). The
-// vehicle's frame: x forward, y starboard, z down. All else in a rig is relative to the camera.
+// How the navigation's pose becomes the camera's (survey/navigation/vehicle_pose.h). The vehicle's
+// frame: x forward, y starboard, z down. Everything else in a rig is relative to the camera.
 struct Mounting {
     AltitudeIs altitude_is = AltitudeIs::Axis;
     double altitude_offset_m = 0.0;                                // added to altitudes
@@ -54,7 +54,7 @@ struct Camera {
     WavelengthRange range;
     Sensor sensor;
     Port port;
-    // None: a pinhole. Else the pitch is that of the columns, and the focal length fx of these.
+    // Empty for a pinhole. Otherwise the pitch is that of the columns, and the focal length its fx.
     std::optional<LensModel> lens{};
     std::optional<Vignetting> vignetting{};
     Readout readout{};

@@ -81,7 +81,7 @@ struct CameraLine {
     std::vector<std::string_view> words;
 };
 
-// Up to two lines that say a camera: two are one too many.
+// Up to two lines that describe a camera: two are one too many.
 std::vector<CameraLine> first_cameras(std::string_view text) {
     std::vector<CameraLine> cameras;
     for (std::size_t line = 1; !text.empty() && cameras.size() < 2; ++line) {
@@ -93,13 +93,13 @@ std::vector<CameraLine> first_cameras(std::string_view text) {
     return cameras;
 }
 
-// As rigs allow, in metres (rig_reader.cpp).
+// Limits as for rigs, in metres (rig_reader.cpp).
 constexpr double kLeastPort_m = 0.001;
 constexpr double kMostPort_m = 10.0;
 constexpr double kMostThickness_m = 1.0;
 constexpr double kMostTilt_rad = std::numbers::pi / 3.0;
 
-// From X right, Y down, Z along the axis; without the sign of -0.
+// From X right, Y down, Z along the axis; without negative zeros.
 Vector3d in_sled(double X, double Y, double Z) {
     return Vector3d(-Y, X, Z) + Vector3d::Zero();
 }
@@ -161,7 +161,7 @@ bool is_cameras_txt(std::string_view text) {
 }
 
 bool is_cameras_bin(std::string_view bytes) {
-    // How many cameras there are, then of each its number, its model's, width, height and three
+    // The number of cameras, then for each its number, its model's, width, height and three
     // parameters or more: little-endian, of 8, 4, 4, 8, 8, 8 bytes.
     constexpr std::size_t kLeastBytes = 56;
     if (bytes.size() < kLeastBytes) return false;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cameras of COLMAP's models. COLMAP's cameras.txt has a line for each,
+// Cameras in COLMAP's models. COLMAP's cameras.txt has a line for each,
 //
 //   CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS...
 //
-// calibmar's calibration.yaml, for cameras under water, has keys:
+// calibmar's calibration.yaml, for underwater cameras, has keys:
 //
 //   model: OPENCV
 //   parameters: [fx, fy, cx, cy, k1, k2, p1, p2]
@@ -16,7 +16,7 @@
 //
 // N is the unit normal, C the dome's centre, X right, Y down, Z along the axis; int_dist is from
 // the pupil to the inner face along N, int_radius that of the inner face; all in metres. The
-// indices na, ng and nw are not taken: a rig names its glass, and its water has an index.
+// indices na, ng and nw are not used: a rig names its glass, and its water has an index.
 //
 // The first pixel's centre is (0.5, 0.5).
 //
@@ -29,10 +29,10 @@
 
 namespace aphotic {
 
-// Whether bytes begin as COLMAP's cameras.bin, which is not read.
+// Whether bytes begin like COLMAP's cameras.bin, which is not read.
 [[nodiscard]] bool is_cameras_bin(std::string_view bytes);
 
-// Whether the first line, comments aside, begins with a camera's number.
+// Whether the first line, apart from comments, begins with a camera's number.
 [[nodiscard]] bool is_cameras_txt(std::string_view text);
 [[nodiscard]] CameraCalibration parse_cameras_txt(const std::string& file_name,
                                                   std::string_view text);

@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Cameras' frame is X right, Y down, Z along the axis.
+// The camera frame has X right, Y down, Z along the axis.
 Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
     const std::optional<Vector3d> direction = direction_at(lens, point_px);
     if (!direction) {
         throw InputError(
-            "the lens's formula does not hold at column {}, row {}", point_px.x(), point_px.y());
+            "the lens model is not valid at column {}, row {}", point_px.x(), point_px.y());
     }
     return {-direction->y(), direction->x(), direction->z()};
 }
@@ -97,7 +97,7 @@ Pinhole pinhole_about(const Camera& camera) {
         return {.focal_length_m = camera.focal_length_m,
                 .sensor_width_m = camera.pixel_pitch_m * camera.width_px};
     }
-    constexpr double kRoom = 1.001;  // the rim is looked at in steps
+    constexpr double kRoom = 1.001;  // the rim is searched in steps
     double half_width = 0.0;         // at unit distance
     const double shape = static_cast<double>(camera.width_px) / camera.height_px;
     for (const Vector3d& direction : rim_seen_by_lens(camera)) {

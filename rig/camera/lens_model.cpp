@@ -67,7 +67,7 @@ Matrix2d distortion_slopes(const LensModel& lens, const Vector2d& p) {
 constexpr int kMostSteps = 50;
 constexpr double kDone = 1e-15;
 
-// The r from which s r comes to this; from 0 outward, so that it is the first.
+// The least r at which s r has this value, searched from 0 outward.
 std::optional<double> undistorted_radius(const LensModel& lens, double distorted_r) {
     double r = 0.0;
     for (int i = 0; i < kMostSteps; ++i) {
@@ -100,7 +100,7 @@ Vector2d image_plane_point(const LensModel& lens, const Vector2d& point_px) {
     return {a, b};
 }
 
-// How far off the axis the formula holds: to where the image no longer grows.
+// How far off the axis the model is valid: up to where the image no longer grows.
 double reach_rad(const LensModel& lens) {
     constexpr int kSteps = 2000;
     constexpr double kMost_rad = 0.5 * std::numbers::pi * (1.0 - 1e-3);
@@ -148,8 +148,8 @@ void require_to_hold(const LensModel& lens, int width_px, int height_px) {
             const std::optional<Vector3d> direction = direction_at(lens, point_px);
             if (direction && std::acos(std::min(1.0, direction->z())) < most_rad) continue;
             throw InputError(
-                "the lens's formula holds to {:.2f} degrees off the axis, which the image exceeds "
-                "at column {:.0f}, row {:.0f}; allowed: a calibration that holds all over the "
+                "the lens model is valid to {:.2f} degrees off the axis, which the image exceeds "
+                "at column {:.0f}, row {:.0f}; allowed: a calibration that is valid over the whole "
                 "image, within 89.9 degrees",
                 most_rad * kDegreesPerRadian,
                 point_px.x(),
@@ -164,7 +164,7 @@ bool is_pinhole(const LensModel& lens, int width_px, int height_px) {
 }
 
 std::string lens_model_signature(const LensModel& lens) {
-    // Names every field: a further one has to be told here.
+    // Names every field: a new field must be added here.
     const auto& [focal_px, centre_px, skew_px, is_fisheye, radial, below, tangential] = lens;
     return fmt::format("{} f {} {} c {} {} skew {} k {} q {} p {}",
                        is_fisheye ? "fisheye" : "rectilinear",

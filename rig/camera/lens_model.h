@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A lens as calibrations describe it: where on the image the light from a direction arrives.
+// A lens as calibrations describe it: where on the image light from a direction arrives.
 //
 //   (a, b)  = (X, Y) / Z                       rectilinear
 //           = (X, Y) theta / hypot(X, Y)       fisheye; theta: angle off the axis
@@ -11,12 +11,12 @@
 //   column  = fx a' + skew b' + cx
 //   row     = fy b' + cy
 //
-// (X, Y, Z) is the direction in the frame of cameras: X right, Y down, Z along the axis; in the
-// sled's, X = y, Y = -x, Z = z (rig.h). k, q, p are without units, all else is in pixels. The
-// centre of the first pixel is (0.5, 0.5): OpenCV's centres are whole numbers, so that its cx and
-// cy are half a pixel less.
+// (X, Y, Z) is the direction in the camera frame: X right, Y down, Z along the axis; in the sled's,
+// X = y, Y = -x, Z = z (rig.h). k, q, p are dimensionless, all else is in pixels. The centre of the
+// first pixel is (0.5, 0.5): OpenCV's centres are whole numbers, so its cx and cy are half a pixel
+// less.
 //
-// It holds as far from the axis as s r grows with r, and to less than 90 degrees.
+// It is valid as far from the axis as s r increases with r, and to less than 90 degrees.
 //
 // With all coefficients 0 it is a pinhole, or an equidistant fisheye. OpenCV's plumb bob is k1, k2,
 // p1, p2, k3; its rational model has q1 to q3 for k4 to k6; its fisheye is k1 to k4 of a fisheye.
@@ -46,17 +46,18 @@ struct LensModel {
 // Where light from along (X, Y, Z) arrives: (column, row). Z > 0.
 [[nodiscard]] Eigen::Vector2d image_point(const LensModel& lens, const Eigen::Vector3d& direction);
 
-// The unit direction that arrives at (column, row), to 1e-14; none where the formula does not hold.
+// The unit direction of the light that arrives at (column, row), to 1e-14; empty where the model is
+// not valid.
 [[nodiscard]] std::optional<Eigen::Vector3d> direction_at(const LensModel& lens,
                                                           const Eigen::Vector2d& point_px);
 
-// An InputError, which names the angle, unless the formula holds all over the image.
+// An InputError, which names the angle, unless the model is valid over the whole image.
 void require_to_hold(const LensModel& lens, int width_px, int height_px);
 
-// No coefficient, no skew, square pixels, and the axis in the image's middle.
+// No coefficients, no skew, square pixels, and the axis in the image's middle.
 [[nodiscard]] bool is_pinhole(const LensModel& lens, int width_px, int height_px);
 
-// Lenses of the same signature see alike.
+// Lenses of the same signature have the same view.
 [[nodiscard]] std::string lens_model_signature(const LensModel& lens);
 
 }  // namespace aphotic

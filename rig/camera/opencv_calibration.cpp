@@ -23,7 +23,7 @@ std::vector<std::size_t> counts_of(std::string_view model) {
     return {4, 5, 8, 12, 14};
 }
 
-// Empty where the file says none.
+// Empty if the file has none.
 std::string model_of(const CalibrationKeys& keys) {
     std::string model;
     if (keys.has("distortion_model")) {
@@ -33,7 +33,8 @@ std::string model_of(const CalibrationKeys& keys) {
     }
     if (keys.number_or("fisheye_model", 0.0) != 0.0) {
         if (!model.empty() && model != "fisheye")
-            keys.fail("fisheye_model", "found beside distortion_model; allowed: one of them");
+            keys.fail("fisheye_model",
+                      "found together with distortion_model; allowed: one of them");
         model = "fisheye";
     }
     return model;
@@ -41,7 +42,7 @@ std::string model_of(const CalibrationKeys& keys) {
 
 void read_matrix(const CalibrationKeys& matrix, LensModel& lens) {
     const std::vector<double> K = matrix.numbers("data", 9);
-    // OpenCV's projection leaves K[1], a skew, out.
+    // OpenCV's projection ignores K[1], a skew.
     constexpr std::array<std::size_t, 4> kZeros{1, 3, 6, 7};
     for (const std::size_t i : kZeros) {
         if (K[i] != 0.0)

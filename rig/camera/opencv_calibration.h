@@ -27,10 +27,10 @@ namespace aphotic {
 
 [[nodiscard]] CameraCalibration read_opencv_calibration(const CalibrationKeys& keys);
 
-// k1 k2 p1 p2 k3 k4 k5 k6, or k1 k2 k3 k4 of a fisheye; those that are missing are 0.
+// k1 k2 p1 p2 k3 k4 k5 k6, or k1 k2 k3 k4 of a fisheye; missing ones are 0.
 void set_opencv_coefficients(LensModel& lens, std::span<const double> coefficients);
 
-// Of a point where the first pixel's centre is (0, 0).
+// For a point where the first pixel's centre is (0, 0).
 [[nodiscard]] Eigen::Vector2d from_pixel_centres(double column, double row);
 
 }  // namespace aphotic

@@ -32,8 +32,9 @@ WaterRay ray_across_axis(const PortWindow& port,
     return ray;
 }
 
-// At a face of this normal, on whose side the light goes, from one index into another. Never
-// totally reflected: glass and water are denser than air, and what has come in from air gets out.
+// Refraction at a face with this normal, on the light's far side, from one index into another.
+// Never totally reflected: glass and water are denser than air, and light that came in from air
+// gets out.
 Vector3d refracted(const Vector3d& direction, const Vector3d& normal, double from, double into) {
     const double ratio = from / into;
     const double cosine = direction.dot(normal);
@@ -46,7 +47,7 @@ WaterRay ray_through_tilted(const PortWindow& port,
                             double glass_index,
                             double water_index) {
     const double towards = in_air.dot(port.normal);
-    if (towards <= 0.0) throw InputError("a ray of the image misses the port, which looks away");
+    if (towards <= 0.0) throw InputError("a ray of the image misses the port, which faces away");
     const Vector3d in_glass = refracted(in_air, port.normal, 1.0, glass_index);
     return {.origin_m = port.distance_m / towards * in_air +
                         port.thickness_m / in_glass.dot(port.normal) * in_glass,
@@ -98,7 +99,7 @@ double front_m(const Port& port) {
 }
 
 std::string port_signature(const PortWindow& port) {
-    // Names every field: a further one has to be told here.
+    // Names every field: a new field must be added here.
     const auto& [distance_m, thickness_m, glass, normal, dome] = port;
     const auto words = [](const Vector3d& v) {
         return fmt::format("{} {} {}", v.x(), v.y(), v.z());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The window that a camera looks through, and what it does to a ray: air inside, glass, water
-// outside. At both faces a ray obeys Snell, with the face's normal m where it passes and the ratio
-// e of the index before it to that behind,
+// The window that a camera looks through, and its effect on a ray: air inside, glass, water
+// outside. At both faces a ray obeys Snell's law, with the face's normal m where it passes and the
+// ratio e of the index before it to that behind,
 //
 //   d' = e d + (sqrt(1 - e^2 (1 - c^2)) - e c) m,      c = d . m
 //
@@ -12,10 +12,10 @@
 //
 //   sin(air) = n_glass sin(glass) = n_water sin(water)
 //
-// Dome: both faces are spheres about one centre. With the centre in the pupil no ray is bent.
+// Dome: both faces are spheres about one centre. With the centre at the pupil no ray is bent.
 //
-// Who needs a port's rays asks here. Known besides: to the rig's reader, and to scene_gen/ for
-// POV-Ray, which traces the glass itself. The reference has ports of its own (validation/).
+// Callers get a port's rays here. Besides, ports are known to the rig's reader, and to scene_gen/
+// for POV-Ray, which traces the glass itself. The reference has its own ports (validation/).
 #pragma once
 
 #include "spectral/refractive_index.h"
@@ -39,7 +39,7 @@ struct PortWindow {
     double thickness_m = 0.0;
     Glass glass;
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of a flat port: unit, into the water
-    std::optional<Dome> dome{};                         // none: it is flat
+    std::optional<Dome> dome{};                         // empty for a flat port
 };
 
 using Port = std::optional<PortWindow>;  // none: the pupil is in the water
@@ -50,7 +50,7 @@ struct WaterRay {
     Eigen::Vector3d direction;
 };
 
-// What becomes of the ray that leaves the pupil along the unit vector in_air. An InputError when it
+// The ray that leaves the pupil along the unit vector in_air, after the port. An InputError if it
 // misses the port.
 [[nodiscard]] WaterRay ray_into_water(const Port& port,
                                       const Eigen::Vector3d& in_air,

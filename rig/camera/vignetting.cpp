@@ -27,7 +27,7 @@ double angle_in_air_rad(const Camera& camera, double column, double row) {
 
 double factor(const NaturalVignetting& natural, const Camera& camera, double column, double row) {
     const double cosine = direction_in_air(camera, column, row).z();
-    // The squares of what is nearly always asked for, and for other lenses a power.
+    // Squares for the usual exponents, and a power for the others.
     if (natural.exponent == 4.0) return cosine * cosine * cosine * cosine;
     return std::pow(std::max(cosine, 0.0), natural.exponent);
 }
@@ -42,7 +42,7 @@ double factor(const TabulatedVignetting& table, const Camera& camera, double col
     const std::vector<double>& angles_rad = table.angles_rad;
     if (angle_rad > angles_rad.back()) {
         throw InputError(
-            "the table ends at {:.4g} degrees, and the image sees {:.4g} at column {}, row {}; "
+            "the table ends at {:.4g} degrees, but the image reaches {:.4g} at column {}, row {}; "
             "allowed: a table that reaches as far",
             angles_rad.back() * kDegreesPerRadian,
             angle_rad * kDegreesPerRadian,
@@ -110,7 +110,7 @@ void require_bright(const Camera& camera) {
             const double V = vignetting_at(camera, column, row);
             if (V > 0.0) continue;
             throw InputError(
-                "found a factor of {:.4g} at column {:.0f}, row {:.0f}; allowed: over 0",
+                "found a factor of {:.4g} at column {:.0f}, row {:.0f}; allowed: above 0",
                 V,
                 column,
                 row);
@@ -135,7 +135,7 @@ TabulatedVignetting parse_vignetting_csv(const std::string& file_name, std::stri
             fail_at_line(
                 file_name, line, "angle_deg: found {}; allowed: from 0, increasing", fields[0]);
         if (!(fields[1] > 0.0))
-            fail_at_line(file_name, line, "factor: found {}; allowed: over 0", fields[1]);
+            fail_at_line(file_name, line, "factor: found {}; allowed: above 0", fields[1]);
         made.angles_rad.push_back(angle_rad);
         made.factors.push_back(fields[1]);
     }

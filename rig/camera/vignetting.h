@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a lens takes off the light towards the image's corners: the factor V of every pixel's
-// signal, one for all wavelengths.
+// The falloff of a lens towards the image's corners: the factor V of every pixel's signal, the same
+// for all wavelengths.
 //
 //   Natural     V = cos^n theta, n = 4 by default     theta: the pixel's angle off the axis in air
 //   Radial      V = 1 + a1 p^2 + a2 p^4 + a3 p^6      p: distance from the principal point, of half
 //                                                     the image's diagonal 1
 //   Tabulated   V over theta, straight lines between rows
 //
-// On the axis V is 1, but for a table that says otherwise. Radial is the form of panorama tools.
-// The reference has a V of its own (validation/).
+// On the axis V is 1, unless a table says otherwise. Radial is the form of panorama tools. The
+// reference has its own V (validation/).
 #pragma once
 
 #include <array>
@@ -46,24 +46,24 @@ using Vignetting = std::variant<NaturalVignetting, RadialVignetting, TabulatedVi
 // p^2 of the point (column, row) of the image.
 [[nodiscard]] double radial_square(const Camera& camera, double column, double row);
 
-// V of the point (column, row) of the image; 1 without vignetting.
+// V at the point (column, row) of the image; 1 without vignetting.
 [[nodiscard]] double vignetting_at(const Camera& camera, double column, double row);
 
-// The radial form that comes closest to the camera's own over its image; 0 without vignetting.
+// The radial form that is closest to the camera's own over its image; 0 without vignetting.
 [[nodiscard]] RadialVignetting radial_like(const Camera& camera);
 
-// Of every pixel's centre, row by row.
+// At every pixel's centre, row by row.
 [[nodiscard]] std::vector<float> vignetting_plane(const Camera& camera);
 
-// An InputError, which names the pixel, unless V is over 0 all over the image and a table reaches
-// as far as it.
+// An InputError, which names the pixel, unless V is above 0 over the whole image and a table
+// extends as far.
 void require_bright(const Camera& camera);
 
-// A table from CSV, of the header angle_deg,factor: angles increase from 0, factors are over 0.
+// A table from CSV, with the header angle_deg,factor: angles increase from 0, factors are above 0.
 [[nodiscard]] TabulatedVignetting parse_vignetting_csv(const std::string& file_name,
                                                        std::string_view text);
 
-// Of the same signature: the same of the same camera.
+// Same signature: the same vignetting of the same camera.
 [[nodiscard]] std::string vignetting_signature(const Vignetting& vignetting);
 
 }  // namespace aphotic

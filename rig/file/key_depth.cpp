@@ -8,8 +8,8 @@
 namespace aphotic {
 namespace {
 
-// Where the text that begins here in quotation marks ends: one in three marks at three, and up to
-// two more of its own; any other with its line, if only in an error.
+// Where the quoted string that begins here ends: triple quotes end at three, and up to two more of
+// their own; any other string with its line, if only in an error.
 std::size_t end_of_text(std::string_view toml, std::size_t at) {
     const char quote = toml[at];
     const std::string long_mark(3, quote);
@@ -18,7 +18,7 @@ std::size_t end_of_text(std::string_view toml, std::size_t at) {
     const auto ends = [&] {
         return toml.substr(at).starts_with(mark) || (!is_long && toml[at] == '\n');
     };
-    // In "..." a backslash takes the meaning from what follows.
+    // In "..." a backslash escapes the next character.
     for (at += mark.size(); at < toml.size() && !ends();) {
         at += quote == '"' && toml[at] == '\\' ? 2 : 1;
     }
@@ -28,7 +28,7 @@ std::size_t end_of_text(std::string_view toml, std::size_t at) {
 }  // namespace
 
 void require_shallow_keys(std::string_view toml, const std::string& file_name) {
-    // What cannot stand inside a key; a value has one dot at most.
+    // Characters that cannot be inside a key; a value has one dot at most.
     constexpr std::string_view kBetweenKeys = "=[]{},\n";
     std::size_t parts = 1;
     for (std::size_t at = 0; at < toml.size();) {
@@ -40,12 +40,10 @@ void require_shallow_keys(std::string_view toml, const std::string& file_name) {
         at = c == '#' ? toml.find('\n', at) : at + 1;
         if (kBetweenKeys.find(c) != std::string_view::npos) parts = 1;
         if (c != '.' || ++parts <= kMostKeyParts) continue;
-        throw InputError(
-            "{0}:{1}: found a key of more than {2} parts with dots between "
-            "them; allowed: up to {2}",
-            file_name,
-            1 + std::ranges::count(toml.substr(0, at), '\n'),
-            kMostKeyParts);
+        throw InputError("{0}:{1}: found a dotted key of more than {2} parts; allowed: up to {2}",
+                         file_name,
+                         1 + std::ranges::count(toml.substr(0, at), '\n'),
+                         kMostKeyParts);
     }
 }
 

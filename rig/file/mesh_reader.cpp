@@ -24,7 +24,7 @@ namespace {
 
 using Triangle = std::array<int, 3>;
 
-// The words of a line, comments and line ends aside.
+// The words of a line, without comments and line ends.
 std::vector<std::string_view> words_of(std::string_view line) {
     constexpr std::string_view kBlank = " \t\r";
     line = line.substr(0, line.find('#'));
@@ -39,7 +39,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
-// As much of a line as one reads.
+// As much of a line as a message shows.
 std::string shown(const std::vector<std::string_view>& words) {
     constexpr std::size_t kMostLetters = 200;
     const std::string line = fmt::format("{}", fmt::join(words, " "));
@@ -53,16 +53,15 @@ std::optional<double> finite_number(std::string_view word) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal do
-// not count. None where no vertex above it has that number.
+// The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal
+// are ignored. Empty if no vertex above it has that number.
 std::optional<int> vertex_of(std::string_view corner, int vertices) {
     const auto index = read_number<int>(corner.substr(0, corner.find('/')));
     if (!index || *index == 0 || *index > vertices || *index < -vertices) return std::nullopt;
     return *index > 0 ? *index - 1 : vertices + *index;
 }
 
-// volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
-// rounding.
+// volatile: GCC 12 omits the rounding when it vectorises several of these.
 double to_single(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;
@@ -74,11 +73,11 @@ struct Polygon {
 };
 
 struct Faces {
-    std::vector<Polygon> polygons;  // without those that are too many
-    std::size_t triangles = 0;      // into which all are to be cut
+    std::vector<Polygon> polygons;  // without excess ones
+    std::size_t triangles = 0;      // that all are cut into
 };
 
-// The lines that count, and of their words those that do.
+// The lines that matter, and their relevant words.
 Faces read_lines(const std::string& text,
                  const std::string& file_name,
                  std::size_t most_triangles,
@@ -111,7 +110,7 @@ Faces read_lines(const std::string& text,
             const std::size_t corners = polygon.corners.size();
             if (corners != values.size() || corners < 3 || corners > kMostCorners) {
                 refuse(fmt::format(
-                    "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
+                    "f and 3 to {} of the {} vertices above it", kMostCorners, vertices));
             }
             faces.triangles += corners - 2;
             if (faces.triangles <= most_triangles) faces.polygons.push_back(std::move(polygon));
@@ -177,8 +176,8 @@ Triangle checked_triangle(const Mesh& mesh,
     };
     if (has_area(at(0), at(1), at(2))) return {corners[0], corners[1], corners[2]};
     throw InputError(
-        "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
-        "1; allowed: three corners that do not lie on one line",
+        "{}: found a triangle without area, with vertices {}, {} and {} (counted from 1); allowed: "
+        "three corners not on one line",
         file_name,
         corners[0] + 1,
         corners[1] + 1,
@@ -196,7 +195,7 @@ void add_triangles(const Faces& faces, const std::string& file_name, bool has_ar
         if (triangles.empty()) {
             throw InputError(
                 "{}:{}: found a polygon that cannot be cut into triangles from one of its corners; "
-                "allowed: one with a corner that sees all others, or triangles in its place",
+                "allowed: one with a corner that sees all others, or triangles instead",
                 file_name,
                 line);
         }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads a mesh of triangles from the text of a Wavefront OBJ file: lines "v x y z", metres in the
-// sled frame (x forward, y starboard, z down), and lines "f a b c ...", whose polygons are cut into
+// Reads a triangle mesh from the text of a Wavefront OBJ file: lines "v x y z", metres in the sled
+// frame (x forward, y starboard, z down), and lines "f a b c ...", whose polygons are cut into
 // triangles from one corner, which must see all others; quadrilaterals along the shorter diagonal.
-// Groups, materials, normals and texture coordinates are passed over: an object is of one material,
-// and flat.
+// Groups, materials, normals and texture coordinates are ignored: an object has one material and
+// flat faces.
 //
-// position_m is added to every vertex. The sum is rounded to single precision, 0.1 um at 2 m:
-// that is how POV-Ray keeps the vertices of a mesh, so that both renderers see the same ones.
+// position_m is added to every vertex. The sum is rounded to single precision, 0.1 um at 2 m, as
+// POV-Ray stores mesh vertices, so that both renderers see the same ones.
 //
-// An error is an InputError that begins with the file and, where it is known, the line.
+// An error is an InputError that begins with the file and, if known, the line.
 #pragma once
 
 #include "rig/rig.h"
@@ -23,16 +23,15 @@ namespace aphotic {
 
 inline constexpr std::size_t kMostTriangles = 1'000'000;
 
-// Of a polygon: to cut it takes the square of their number, at least.
+// For a polygon: cutting it takes at least the square of their number.
 inline constexpr std::size_t kMostCorners = 256;
 
-// A triangle whose height is under this share of its longest side has no plane that single
-// precision would tell.
+// A triangle whose height is below this share of its longest side has no plane in single precision.
 inline constexpr double kLeastTriangleHeight = 1e-6;
 
 inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20U;
 
-// file_name stands in messages.
+// file_name is for messages.
 [[nodiscard]] Mesh parse_mesh(const std::string& file_name,
                               const std::string& obj,
                               const Eigen::Vector3d& position_m);

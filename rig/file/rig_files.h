@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tables and other files that a rig file names, read from beside it. What they hold counts in
-// the rig's digest.
+// The tables and other files that a rig file names, read from its folder. Their contents are part
+// of the rig's digest.
 #pragma once
 
 #include "rig/file/section.h"
@@ -20,7 +20,7 @@ class RigFiles {
   public:
     explicit RigFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    // name: as the rig has it.
+    // name: as in the rig.
     std::string read(const std::string& name, std::size_t most_bytes);
 
     // Curves by a built-in table's name or from a CSV file.
@@ -29,18 +29,18 @@ class RigFiles {
                                        std::string_view key,
                                        const std::string& name,
                                        CurveRole role);
-    // absent: the built-in one that is taken without the key.
+    // absent: the built-in table used without the key.
     Spectrum curve(Section& section,
                    std::string_view key,
                    CurveRole role,
                    const std::string& absent);
-    // Any table, from a file that the key names.
+    // Any table, from a file named by the key.
     Table table(const Section& section, std::string_view key, const std::string& name);
 
     [[nodiscard]] std::filesystem::path path_of(const std::string& name) const;
     [[nodiscard]] const std::vector<RigFile>& all() const { return files_; }
 
-    // SHA-256 of the rig file's text and of all that it names.
+    // SHA-256 of the rig file's text and of all files that it names.
     [[nodiscard]] std::string digest(const std::string& toml) const;
 
   private:

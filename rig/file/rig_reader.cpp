@@ -41,13 +41,13 @@ namespace fs = std::filesystem;
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kMetresPerMicrometre = 1e-6;
 
-// A thousand strobes, each written out, are a fiftieth of it.
+// A rig with a thousand strobes, each written out, has a fiftieth of this size.
 constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
 
-// Of all strobes together: what POV-Ray takes where the water is clear (pov_scene.cpp).
+// For all strobes together: POV-Ray's limit in clear water (pov_scene.cpp).
 constexpr std::size_t kMostCones = 100'000;
 
-// What a rig may hold. Wide enough for any sled, narrow enough to catch a slipped unit.
+// Limits of a rig. Wide enough for any sled, narrow enough to catch a wrong unit.
 constexpr Bounds kAltitudeM{0.001, 10000.0};
 constexpr Bounds kTiltDeg{-89.9, 89.9};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
@@ -78,7 +78,7 @@ constexpr Bounds kConeExponent{0.0, 1000.0};
 constexpr Bounds kFwhmDeg{1.0, 179.9};
 constexpr Bounds kTurnDeg{-360.0, 360.0};
 constexpr Bounds kOpticsMm{0.01, 100000.0};
-// Nearer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
+// Closer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
 // to 1e-4.
 constexpr Bounds kOpticsLengthMm{0.05, 100000.0};
 constexpr Bounds kWindowIndex{1.0, 3.0};
@@ -89,14 +89,13 @@ constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
 const std::string kOneKindOfBeam =
-    "found beside another kind of beam; allowed: one of cones, fwhm_deg, table, or diffuser_mm "
-    "with "
-    "its lens";
-// An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
+    "found together with another kind of beam; allowed: one of cones, fwhm_deg, table, or "
+    "diffuser_mm with its lens";
+// An object's size: POV-Ray skips blockers within a millimetre of what they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
 
-// What navigation means by an altitude.
+// How navigation measures altitude.
 void read_altitude_meaning(Section& sled, Mounting& mounting) {
     mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
     if (!sled.has("altitude_is")) return;
@@ -107,7 +106,7 @@ void read_altitude_meaning(Section& sled, Mounting& mounting) {
 }
 
 Sled read_sled(Section section, Mounting& mounting) {
-    // Before altitude_m, which they would else be taken for, misspelt.
+    // Before altitude_m, since they would otherwise be taken as its misspellings.
     read_altitude_meaning(section, mounting);
     const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
                     .pitch_rad = section.number_or("pitch_deg", kTiltDeg, 0.0) * kRadiansPerDegree,
@@ -121,7 +120,7 @@ Glass read_glass(Section& port) {
     return port.at_key("glass", [&] { return builtin_glass(name); });
 }
 
-// A dome's own keys, beside those of all ports.
+// A dome's own keys, besides those of all ports.
 Dome read_dome(Section& section) {
     Dome dome{.radius_m = section.number("radius_mm", kPortDistanceMm) * kMetresPerMillimetre};
     if (section.has("centre_mm")) {
@@ -160,13 +159,14 @@ PortWindow read_port(Section section) {
     return port;
 }
 
-// All but the glass is the calibration's.
+// Everything except the glass is the calibration's.
 PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated) {
     for (const std::string_view key :
          {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
         if (section.has(key))
-            section.fail_at(key,
-                            "found beside a calibration that tells the port; allowed: glass alone");
+            section.fail_at(
+                key,
+                "found together with a calibration that describes the port; allowed: glass alone");
     }
     const auto& [distance_m, thickness_m, normal, dome] = calibrated;
     PortWindow port{.distance_m = distance_m,
@@ -198,14 +198,13 @@ Sensor read_response_table(Section response, RigFiles& files) {
 Sensor read_response(Section& camera, RigFiles& files) {
     const std::string allowed =
         "a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or \"quantum\"), "
-        "or "
-        "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono camera without "
+        "or { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, for a mono camera without "
         "filters";
     if (camera.required("response", allowed).is_table()) {
         return read_response_table(camera.section("response", allowed), files);
     }
     const std::string name = camera.text("response", allowed);
-    // A file does not say whether it counts energy or photons, so its name alone will not do.
+    // A file does not say whether it counts energy or photons, so its name alone is not enough.
     if (names_a_file(name)) camera.found_but("response", allowed);
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
@@ -236,16 +235,16 @@ std::array<int, 2> read_size(Section& section,
     }
     const std::array size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
     if (calibration && size != std::array{calibration->width_px, calibration->height_px}) {
-        section.found_but("resolution",
-                          fmt::format("[{}, {}], that of the calibration",
-                                      calibration->width_px,
-                                      calibration->height_px));
+        section.found_but(
+            "resolution",
+            fmt::format(
+                "[{}, {}], the calibration's", calibration->width_px, calibration->height_px));
     }
     return size;
 }
 
-// One of: pitch and focal length, a field of view, a calibration. Of the latter two, only the ratio
-// of focal length and pitch counts.
+// One of: pitch and focal length, a field of view, a calibration. For the latter two, only the
+// ratio of focal length and pitch matters.
 void read_lens(Section& section,
                const std::optional<CameraCalibration>& calibration,
                Camera& camera) {
@@ -304,7 +303,7 @@ void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
     });
 }
 
-// Where the camera is on the vehicle.
+// The camera's position on the vehicle.
 void read_place(Section& camera, Mounting& mounting) {
     if (camera.has("position_m"))
         mounting.position_m = Eigen::Vector3d(camera.numbers<3>("position_m", kPositionM).data());
@@ -315,7 +314,7 @@ void read_place(Section& camera, Mounting& mounting) {
     }
 }
 
-// What no render needs, and surveys do.
+// Keys that no render needs, but surveys do.
 Readout read_readout(Section& camera, bool is_mono) {
     const auto optional = [&](std::string_view key, Bounds bounds) {
         return camera.has(key) ? std::optional(camera.number(key, bounds)) : std::nullopt;
@@ -335,14 +334,14 @@ Readout read_readout(Section& camera, bool is_mono) {
     readout.bayer = camera.word("bayer", {"RGGB", "BGGR", "GRBG", "GBRG", "mono"});
     if ((readout.bayer == "mono") != is_mono) {
         camera.found_but("bayer",
-                         is_mono ? "\"mono\", as the response is of one channel"
-                                 : "a pattern of colours, as the response is of three channels");
+                         is_mono ? "\"mono\", since the response has one channel"
+                                 : "a colour pattern, since the response has three channels");
     }
     return readout;
 }
 
-// The same view in fewer pixels, whose shape is kept: a row at the edge may be cut, or won, in
-// part.
+// The same view in fewer pixels, of the same shape: part of a row may be lost or gained at the
+// edge.
 void scale_down(double scale, Camera& camera) {
     const auto width_px = std::max(1, static_cast<int>(std::lround(scale * camera.width_px)));
     const double factor = static_cast<double>(camera.width_px) / width_px;
@@ -415,7 +414,7 @@ Cone read_cone(Section& section) {
     if (cone.edge_rad > cone.half_angle_rad) {
         section.found_but("edge_deg", "up to half_angle_deg, where the cone ends");
     }
-    // No cosine tells such an edge from a sharp one.
+    // No cosine distinguishes such an edge from a sharp one.
     if (std::cos(cone.half_angle_rad - cone.edge_rad) == std::cos(cone.half_angle_rad))
         cone.edge_rad = 0.0;
     section.refuse_unknown_keys();
@@ -497,13 +496,12 @@ Beam read_beam(Section section, RigFiles& files, std::string name, const Water& 
         }
     }
     if (!section.has("cones")) {
-        refuse_beside({"weights"}, "found for a beam without cones; allowed: for cones");
+        refuse_beside({"weights"}, "found for a beam without cones; allowed: with cones");
     }
     if (beam.cones.empty()) {
         beam.turn_rad = section.number_or("turn_deg", kTurnDeg, 0.0) * kRadiansPerDegree;
     } else {
-        refuse_beside({"turn_deg"},
-                      "found for a beam that is round; allowed: for table and diffuser_mm");
+        refuse_beside({"turn_deg"}, "found for a round beam; allowed: with table or diffuser_mm");
     }
     if (section.has("measured_in") && section.word("measured_in", {"water", "air"}) == "air") {
         beam.window = read_window(section, water);
@@ -522,7 +520,7 @@ Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
         if (tilt_rad == 0.0) return Eigen::Vector3d::UnitZ();
         aim.found_but(
             "toward",
-            "direction = [x, y, z] in place of aim, since this strobe stands on the camera's axis");
+            "direction = [x, y, z] instead of aim, since this strobe is on the camera's axis");
     }
     return std::cos(tilt_rad) * Eigen::Vector3d::UnitZ() + std::sin(tilt_rad) * inward.normalized();
 }
@@ -545,8 +543,8 @@ Emitter read_emitter(Section& strobe) {
             .along_m = along_mm * kMetresPerMillimetre};
 }
 
-// Phi(lambda) = power S(lambda) of the table S: of a lamp whose flux is known, power is that over
-// the integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
+// Phi(lambda) = power S(lambda) of the table S: for a lamp of known flux, power is that over the
+// integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
 double read_power(Section& strobe, const Spectrum& spectrum) {
     const std::vector<std::string> kinds{"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"};
     std::string kind;
@@ -555,7 +553,8 @@ double read_power(Section& strobe, const Spectrum& spectrum) {
         if (!kind.empty()) {
             strobe.fail_at(
                 key,
-                fmt::format("found beside {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
+                fmt::format(
+                    "found together with {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
         }
         kind = key;
     }
@@ -567,7 +566,7 @@ double read_power(Section& strobe, const Spectrum& spectrum) {
     if (!(of_table > 0.0)) {
         strobe.fail_at(kind,
                        fmt::format("found with a spectrum that has {}; allowed: one that has some",
-                                   is_luminous ? "no light that the eye sees" : "no light"));
+                                   is_luminous ? "no visible light" : "no light"));
     }
     return value / of_table;
 }
@@ -610,9 +609,9 @@ Box read_box(Section& object) {
     const Eigen::Vector3d a(from_m.data());
     const Eigen::Vector3d b(to_m.data());
     if ((a - b).cwiseAbs().minCoeff() < kLeastSideM) {
-        object.found_but("to_m",
-                         fmt::format("a corner at least {} m from that of from_m along every axis",
-                                     kLeastSideM));
+        object.found_but(
+            "to_m",
+            fmt::format("a corner at least {} m from from_m along every axis", kLeastSideM));
     }
     return {.least_m = a.cwiseMin(b), .most_m = a.cwiseMax(b)};
 }
@@ -632,7 +631,7 @@ Mesh read_mesh_of(Section& object, RigFiles& files) {
     });
 }
 
-// The key says where the object is, and so where a message about that stands.
+// The key gives the object's place, and so the place for messages about it.
 constexpr std::string_view place_key(const std::string_view shape) {
     if (shape == "sphere") return "centre_m";
     return shape == "box" ? "from_m" : "file";
@@ -653,12 +652,11 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
     for (const Strobe& strobe : strobes) {
         const double away_m = distance_m(shape, strobe.position_m);
         if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
-        throw InputError(
-            fmt::format("found strobe '{}' inside the object or {} m off it; allowed: at "
-                        "least {} m off",
-                        strobe.name,
-                        at_most(away_m),
-                        kLeastDistance_m));
+        throw InputError(fmt::format(
+            "found strobe '{}' inside the object or {} m from it; allowed: at least {} m",
+            strobe.name,
+            at_most(away_m),
+            kLeastDistance_m));
     }
 }
 
@@ -687,20 +685,18 @@ std::vector<Object> read_objects(Section& top,
     if (!top.has("object")) return objects;
     for (Section& section : top.sections("object", "one or more tables [[object]]")) {
         objects.push_back(read_object(section, files, strobes));
-        if (!names.insert(objects.back().name).second)
-            section.found_but("name", "a name that no other object has");
+        if (!names.insert(objects.back().name).second) section.found_but("name", "a unique name");
     }
     return objects;
 }
 
-// A refractive index stands in the list as the line between its range's ends: only the range
-// counts there.
+// A refractive index is in the list as the line between its range's ends: only the range matters.
 Spectrum range_of_index(const std::string& what, WavelengthRange range) {
     return {
         fmt::format("refractive index of {}", what), {range.first_nm, range.last_nm}, {1.0, 1.0}};
 }
 
-// Every curve that the images need, over the range that they integrate.
+// Every curve that the images need, over their range of integration.
 void require_tables_to_cover_the_range(const Rig& rig) {
     std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
     curves.push_back(&rig.seafloor.reflectance);
@@ -741,24 +737,23 @@ std::vector<Strobe> read_strobes(Section& top,
     std::size_t cones = 0;
     for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
         strobes.push_back(read_strobe(section, files, beams, sled));
-        if (!names.insert(strobes.back().name).second)
-            section.found_but("name", "a name that no other strobe has");
+        if (!names.insert(strobes.back().name).second) section.found_but("name", "a unique name");
         if (water.scatters() && strobes.back().position_m.norm() < kLeastDistance_m) {
             section.found_but("position_m",
                               fmt::format("in water that scatters, a point at least {} m from the "
-                                          "camera's pupil, for the veil has no end there",
+                                          "camera's pupil, since the veil is infinite there",
                                           kLeastDistance_m));
         }
         cones += strobes.back().beam.cones.size();
         if (cones <= kMostCones) continue;
         section.found_but("beam",
-                          fmt::format("up to {} cones of all strobes together", kMostCones));
+                          fmt::format("up to {} cones in all strobes together", kMostCones));
     }
     return strobes;
 }
 
 Rig read_all(Section top, RigFiles files, std::string toml) {
-    std::string title = top.text_or("title", "a text in quotes", "");
+    std::string title = top.text_or("title", "a string in quotes", "");
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
     Camera camera = read_camera(top.section("camera", "a table [camera]"), files, mounting);

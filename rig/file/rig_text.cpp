@@ -27,7 +27,7 @@ std::vector<std::string> steps_of(std::string_view key) {
     return steps;
 }
 
-// Of an array of tables: by its name, or by its number from 0 on.
+// An element of an array of tables, by its name, or by its number from 0.
 const toml::node* element(const toml::array& array, const std::string& step) {
     for (const toml::node& node : array) {
         if (const toml::table* table = node.as_table(); table != nullptr) {
@@ -63,7 +63,7 @@ std::string names_in(const toml::array& array) {
     return fmt::format("{}0 to {}", names, array.size() - 1);
 }
 
-// A whole number gets a decimal point, for some keys take no integers.
+// A whole number gets a decimal point, since some keys take no integers.
 std::string toml_of(double value) {
     std::string text = fmt::format("{}", value == 0.0 ? 0.0 : value);
     if (text.find_first_of(".en") == std::string::npos) text += ".0";
@@ -86,7 +86,7 @@ void for_tables(toml::node& node, const F& f) {
     }
 }
 
-// On a line of its own, as a value: tables in braces.
+// As a value on a line of its own: tables in braces.
 std::string toml_of(const toml::node& node) {
     toml::table pair{{"key", node}};
     pair.is_inline(true);
@@ -112,7 +112,7 @@ struct TextRange {
     std::size_t last = 0;
 };
 
-// Where the nodes of a text stand in it.
+// The position of a text's nodes.
 class TextPlaces {
   public:
     explicit TextPlaces(std::string_view text) : text_(text) {
@@ -124,14 +124,14 @@ class TextPlaces {
     [[nodiscard]] TextRange of(const toml::source_region& region) const {
         return {byte_of(region.begin), byte_of(region.end)};
     }
-    // From the key's own begin on, tables' names before it included.
+    // From the start of the key itself, including tables' names before it.
     [[nodiscard]] TextRange of(const toml::key& key, const toml::node& value) const {
         std::size_t first = byte_of(key.source().begin);
         const std::size_t line = lines_[key.source().begin.line - 1];
         while (first > line && is_of_key(text_[first - 1])) --first;
         return {first, byte_of(value.source().end)};
     }
-    // After its line's end; of the last line, the text's.
+    // After its line's end; for the last line, the text's end.
     [[nodiscard]] std::size_t end_of_line(std::size_t at) const {
         return std::min(text_.find('\n', at), text_.size() - 1) + 1;
     }
@@ -176,8 +176,8 @@ bool has_headers(const toml::node& node, const TextPlaces& places) {
     return node.is_table() && !node.as_table()->is_inline() && places.is_header(*node.as_table());
 }
 
-// The ends of all values that stand under a table's own header or within its braces, not under a
-// header of their own; 0: there are none.
+// The ends of all values under a table's own header or within its braces, not under a header of
+// their own; 0 if there are none.
 std::size_t last_end(const toml::table& table, const TextPlaces& places) {
     std::size_t end = 0;
     for (auto&& [key, value] : table) {
@@ -196,7 +196,7 @@ bool has_no_place(const toml::table& table) {
     });
 }
 
-// The text with one more key in the table, of the root or one with a header or braces.
+// The text with one more key in the table: the root, or one with a header or braces.
 std::string with_key(std::string text,
                      const toml::table& table,
                      bool is_root,
@@ -216,7 +216,7 @@ std::string with_key(std::string text,
     return text.insert(at, pair + "\n");
 }
 
-// Whole lines where nothing else stands on them, the mark of a list with it.
+// Whole lines if nothing else is on them, including a list's mark.
 TextRange with_its_surroundings(const std::string& text, TextRange range) {
     const TextPlaces places(text);
     const std::size_t begin = places.begin_of_line(range.first);
@@ -236,7 +236,7 @@ TextRange with_its_surroundings(const std::string& text, TextRange range) {
     return range;
 }
 
-// A table that has no braces stands in many lines: each goes by itself.
+// A table without braces is in many lines: each is removed separately.
 void add_ranges(const toml::key& key,
                 const toml::node& node,
                 const TextPlaces& places,
@@ -257,7 +257,7 @@ RigText::RigText(const std::filesystem::path& file)
 
 RigText::RigText(std::string_view toml, std::string name, std::filesystem::path folder)
     : text_(toml), name_(std::move(name)), folder_(std::move(folder)) {
-    static_cast<void>(rig());  // throws for a text that is no rig's
+    static_cast<void>(rig());  // throws if the text is not a rig's
 }
 
 bool RigText::has(std::string_view key) const {
@@ -281,7 +281,7 @@ void RigText::put(std::string_view key, const std::string& value) {
     const toml::table root = toml::parse(text_);
     const TextPlaces places(text_);
     std::vector<std::string> steps = steps_of(key);
-    std::vector<const toml::node*> nodes{&root};  // on the way, as far as it is there
+    std::vector<const toml::node*> nodes{&root};  // on the way, as far as it exists
     while (nodes.size() <= steps.size()) {
         const toml::node* next = child(*nodes.back(), steps[nodes.size() - 1]);
         if (next == nullptr) break;
@@ -299,7 +299,7 @@ void RigText::put(std::string_view key, const std::string& value) {
         throw InputError(
             "{}: found no '{}'; allowed: {}", key, steps[nodes.size() - 1], names_in(*array));
     if (!nodes.back()->is_table()) throw InputError("{}: found no table to hold it", key);
-    // a.b.c = 1 makes tables that have neither header nor braces: their keys go where it stands.
+    // a.b.c = 1 makes tables that have neither header nor braces: their keys go next to it.
     const auto is_dotted = [&](const toml::table& table) {
         return !table.is_inline() && !places.is_header(table);
     };
@@ -357,7 +357,7 @@ void RigText::erase(std::string_view key) {
     std::vector<TextRange> ranges;
     const auto entry = table->find(key.substr(dot + 1));
     add_ranges(entry->first, entry->second, TextPlaces(text_), ranges);
-    // From the end, so that what comes before stays where it is.
+    // From the end, so that earlier positions stay valid.
     std::ranges::sort(ranges, std::ranges::greater(), &TextRange::first);
     for (const TextRange& range : ranges) {
         const TextRange all = with_its_surroundings(text_, range);

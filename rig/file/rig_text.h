@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A rig file as text whose keys can be set, for whoever looks for a better rig or makes many of
-// one. Keys are paths as a user would say them, a strobe, material or object by its name or number:
+// A rig file as text whose keys can be set, to search for a better rig or to make many variants.
+// Keys are paths in the user's terms, a strobe, material or object by its name or number:
 //
 //   water.multiple      sled.altitude_m      strobe.fore.power      strobe.1.position_m
 //   beam.fresnel.cones  camera.vignetting.radial
 //
-// A value is replaced where it stands; a new key follows the last of its table. All else, comments
-// and layout included, stays as its author wrote it. Numbers have the fewest digits that give the
-// same number back.
+// A value is replaced in place; a new key follows the last of its table. All else, comments and
+// layout included, stays as its author wrote it. Numbers have the fewest digits that read back to
+// the same number.
 #pragma once
 
 #include "rig/rig.h"
@@ -27,28 +27,29 @@ class RigText {
     RigText(std::string_view toml, std::string name, std::filesystem::path folder);
 
     [[nodiscard]] bool has(std::string_view key) const;
-    // None where the key is not there or of another kind.
+    // Empty if the key is missing or of another kind.
     [[nodiscard]] std::optional<double> number(std::string_view key) const;
     [[nodiscard]] std::optional<std::string> word(std::string_view key) const;
 
-    // Makes the tables on the way to it. An InputError where there is no such strobe or object, or
-    // what should be a table is none.
+    // Creates the tables on the way to it. An InputError if there is no such strobe or object, or
+    // if what should be a table is not.
     void set(std::string_view key, double value);
     void set(std::string_view key, const std::string& value);
     void set(std::string_view key, const std::vector<double>& values);
-    // As TOML has it: 2.5, "xenon-flash", [0.5, 0, 0], true. A word without quotes is a text.
+    // As in TOML: 2.5, "xenon-flash", [0.5, 0, 0], true. A word without quotes is a string.
     void set_toml(std::string_view key, std::string_view value);
-    // With its line, where nothing else stands there. A table goes with all that it holds.
+    // Including its line, if nothing else is on it. A table is removed with all its contents.
     void erase(std::string_view key);
-    // A table of a rig's, whose place is another here; what stood in that place goes.
+    // Takes a table from another rig, under a different path here; the table at that path is
+    // removed.
     void copy(const RigText& rig, std::string_view table, std::string_view place);
 
-    // Files that the text names are found here.
+    // Files named in the text are looked up here.
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] const std::string& text() const { return text_; }
-    // Copies these below another folder, where they are not there themselves.
+    // Copies these to another folder, unless they are there already.
     void copy_files(const std::filesystem::path& folder) const;
-    // As rig/file/rig_reader.h reads it.
+    // The rig as rig/file/rig_reader.h reads it.
     [[nodiscard]] Rig rig() const;
 
   private:

@@ -46,7 +46,7 @@ bool Section::has(std::string_view key) {
 
 const toml::node& Section::required(std::string_view key, const std::string& allowed) {
     if (has(key)) return *table_.get(key);
-    // Most often it is there, misspelt.
+    // Most often the key exists, but is misspelt.
     for (const auto& [name, node] : table_) {
         if (is_known(name.str())) continue;
         if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
@@ -125,7 +125,7 @@ void Section::refuse_unknown_keys() const {
             nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
         fail(node,
              name,
-             fmt::format("is not a known key{} Known here: {}",
+             fmt::format("is not a known key{} Known keys: {}",
                          hint.empty() ? "." : hint,
                          fmt::join(known_, ", ")));
     }
@@ -142,7 +142,7 @@ void Section::refuse_both(std::initializer_list<std::string_view> keys) {
     for (const std::string_view key : keys) {
         if (!has(key)) continue;
         if (!first.empty())
-            fail_at(key, fmt::format("found beside '{}'; allowed: one of them", first));
+            fail_at(key, fmt::format("found together with '{}'; allowed: one of them", first));
         first = key;
     }
 }
@@ -151,15 +151,16 @@ void Section::require_one_line(const toml::node& node,
                                std::string_view key,
                                std::string_view text) const {
     if (has_control_characters(text)) {
-        fail(node,
-             key,
-             fmt::format("found '{}'; allowed: a text without control characters", excerpt(text)));
+        fail(
+            node,
+            key,
+            fmt::format("found '{}'; allowed: a string without control characters", excerpt(text)));
     }
     if (text.size() > kMostTextBytes) {
         fail(node,
              key,
              fmt::format(
-                 "found a text of {} bytes; allowed: up to {}", text.size(), kMostTextBytes));
+                 "found a string of {} bytes; allowed: up to {}", text.size(), kMostTextBytes));
     }
 }
 
@@ -171,7 +172,7 @@ std::string Section::one_line(const toml::node& node, std::string_view key) cons
 
 bool Section::is_within(const toml::node& node, Bounds bounds) {
     if (!node.is_number()) return false;
-    const auto value = node.value<double>();  // nothing: an integer that no double holds
+    const auto value = node.value<double>();  // empty: an integer that no double holds
     return value && *value >= bounds.least && *value <= bounds.most;  // false for NaN
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One table of a rig file, as its readers ask for it: every key by name, its type and bounds
-// checked, and in the end no key that nobody asked for. Every fault is an InputError
+// One table of a rig file, as its readers access it: every key by name, its type and bounds
+// checked, and at the end an error for any key that was not asked for. Every error is an InputError
 // "file:line: key: what was found; allowed: ...".
 #pragma once
 
@@ -22,11 +22,11 @@
 
 namespace aphotic {
 
-// Strobes, beams, cones of a beam, materials, objects: of each. What is done for one is done beside
-// all the others.
+// The limit for each of strobes, beams, cones of a beam, materials, objects. The work for one grows
+// with all the others.
 inline constexpr std::size_t kMostOfAKind = 1024;
 
-// Any title or file name; and POV-Ray reads a comment of it.
+// Enough for any title or file name; POV-Ray also reads it within a comment.
 inline constexpr std::size_t kMostTextBytes = 1000;
 
 struct Bounds {
@@ -36,7 +36,7 @@ struct Bounds {
 
 [[nodiscard]] std::string allowed_number(Bounds bounds);
 
-// One table of the rig file, which knows where it stands and which of its keys were asked for.
+// One table of the rig file, which knows its position and which of its keys were asked for.
 class Section {
   public:
     Section(const toml::table& table, std::string path, const std::string& file)
@@ -101,17 +101,17 @@ class Section {
 
     [[nodiscard]] std::vector<std::string> keys() const;
 
-    // Call when every key that is known has been asked for.
+    // Call when every known key has been asked for.
     void refuse_unknown_keys() const;
 
-    // Before any is asked for: where another key stands in place of one that is required, that is
-    // the cause.
-    void refuse_keys_but(std::string_view known);  // with commas between
+    // Call before any is asked for: if another key is there instead of a required one, that is the
+    // cause.
+    void refuse_keys_but(std::string_view known);  // separated by commas
 
-    // Ways to say one thing.
+    // Alternative ways to give one value.
     void refuse_both(std::initializer_list<std::string_view> keys);
 
-    // Runs read(), and puts file, line and key before whatever InputError comes out of it.
+    // Runs read(), and prefixes any InputError with file, line and key.
     template <typename Read>
     [[nodiscard]] auto at_key(std::string_view key, Read read) const {
         try {
@@ -122,8 +122,8 @@ class Section {
         }
     }
 
-    // Texts of a rig stand in scenes, settings, pages and messages, where a line's end or an escape
-    // would be read as more than text.
+    // Strings of a rig end up in scenes, settings, pages and messages, where a newline or an escape
+    // would have a meaning.
     void require_one_line(const toml::node& node,
                           std::string_view key,
                           std::string_view text) const;

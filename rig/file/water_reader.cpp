@@ -63,7 +63,8 @@ Spectrum scattering_of(const Section& section, const Spectrum& c, const Spectrum
     const std::array<const Spectrum*, 2> both{&c, &a};
     const WavelengthRange common = common_range(both);
     if (common.first_nm >= common.last_nm)
-        section.fail_at("attenuation", "covers no wavelength of the absorption; allowed: the same");
+        section.fail_at("attenuation",
+                        "covers no wavelength of the absorption; allowed: the same range");
     const std::vector<double> knots_nm = union_of_knots(both, common);
     std::vector<double> values;
     for (const double nm : knots_nm) {
@@ -71,7 +72,7 @@ Spectrum scattering_of(const Section& section, const Spectrum& c, const Spectrum
         if (values.back() >= 0.0) continue;
         section.fail_at("attenuation",
                         fmt::format("found {}/m at {} nm, less than the absorption {}/m; allowed: "
-                                    "no less, for it is absorption and scattering",
+                                    "no less, since attenuation is absorption plus scattering",
                                     c.at(nm),
                                     nm,
                                     a.at(nm)));
@@ -82,12 +83,12 @@ Spectrum scattering_of(const Section& section, const Spectrum& c, const Spectrum
 void read_tables(Section& section, RigFiles& files, Water& water) {
     if (section.has("scattering")) {
         const std::string allowed =
-            "a .csv file beside the rig, or \"sea-water\" for what water itself scatters";
+            "a .csv file beside the rig, or \"sea-water\" for the scattering of water itself";
         if (section.text("scattering", allowed) == "sea-water") {
             if (section.has("phase"))
                 section.fail_at("phase",
-                                "found for what sea water itself scatters, whose phase function "
-                                "is known; allowed: with particles");
+                                "found with pure sea water, whose phase function is known; "
+                                "allowed: with particles");
             water.scatterers.push_back(seawater_scatterer(water.salinity_psu, water.temperature_c));
             return;
         }
@@ -134,10 +135,10 @@ Water read_water(Section section, RigFiles& files) {
     } else {
         read_tables(section, files, water);
     }
-    // Known keys, but not here.
+    // Known keys, but not for this water.
     for (const char* key : {"cdom_440_per_m", "particles"}) {
         if (section.has(key) && !section.has("chlorophyll_mg_m3"))
-            section.fail_at(key, "found without chlorophyll_mg_m3; allowed: beside it");
+            section.fail_at(key, "found without chlorophyll_mg_m3; allowed: together with it");
     }
     if (section.has("phase") && water.scatterers.empty())
         section.fail_at("phase",

@@ -83,7 +83,7 @@ std::vector<float> AltitudeExponential::level(std::span<const float> plane,
         const auto& [a, b, c] = fits_[i];
         const float here = a * std::exp(b * h) + c;
         const float wanted = a * std::exp(b * h0) + c;
-        // Where no light was seen there is none to level.
+        // Where no light was seen there is nothing to level.
         levelled[i] = here > 0.0F ? plane[i] * std::min(wanted / here, kMostGain) : plane[i];
     }
     return levelled;
@@ -98,7 +98,8 @@ void AltitudeExponential::end() {
     spread_ = RunningMean(0);
     mean_ = observed.average;
     common_mean_ = mean_of(mean_);
-    // The errors of the means will do for s: all pixels have as many samples. Of one they are NaN.
+    // The errors of the means serve as s, since all pixels have as many samples. With a single
+    // sample they are NaN.
     std::vector<float> deviation = observed.standard_error;
     for (float& value : deviation) value = value > 0.0F ? value : 0.0F;
     const double common = mean_of(deviation);

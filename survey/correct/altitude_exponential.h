@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The correction of light over altitude that surveys from AUVs have by oplab's correct_images, of
-// one plane of samples. It is learned from a survey in two passes, and then for each pixel
+// The correction of light over altitude in oplab's correct_images, used for AUV surveys, on one
+// plane of samples. It is learned from a survey in two passes, and then for each pixel
 //
 //   level  J = I f(h0) / f(h),     f(h) = a exp(b h) + c
 //   out    (J - m) S / s + M
@@ -12,14 +12,14 @@
 // m, s  the pixel's mean and standard deviation of J over the survey
 // M, S  the means of m and s over the plane, so that the result keeps the survey's brightness
 //
-// oplab has 30 % and 3 % of full scale for M and S, leaves out bins of fewer than three images, and
-// fits by soft L1, which is squares to 0.3 % where the difference is under a tenth of full scale.
-// Here no level is amplified more than 1 / kLeastShare times, nor is s less than kLeastShare
-// of S; where S is 0, all images being alike, S / s is 1.
+// oplab uses 30 % and 3 % of full scale for M and S, omits bins of fewer than three images, and
+// fits by soft L1, which is least squares to 0.3 % where the difference is under a tenth of full
+// scale. Here no level is amplified more than 1 / kLeastShare times, nor is s less than kLeastShare
+// of S; if S is 0, all images being equal, S / s is 1.
 //
-// What it cannot do: S / s makes a pixel where the floor varies much look like one where it varies
-// little, so with few images what is in them shows in all the others; no exponential follows an
-// edge of a beam that passes; and pitch and roll are not asked for.
+// Limits: S / s makes a pixel where the floor varies much look like one where it varies little, so
+// with few images the contents of each show in all the others; no exponential follows a passing
+// edge of a beam; and pitch and roll are ignored.
 //
 // github.com/ocean-perception/oplab_pipeline, correct_images.
 #pragma once
@@ -37,13 +37,13 @@ class AltitudeExponential {
   public:
     AltitudeExponential(std::size_t samples, double bin_m);
 
-    // The first pass: a plane of as many samples as were announced. Keeps 4 bytes of each sample
+    // The first pass: a plane with the announced number of samples. Keeps 4 bytes of each sample
     // for each bin.
     void learn_level(std::span<const float> plane, double altitude_m);
-    // Ends it. An InputError when the images lie in fewer than four bins.
+    // Ends it. An InputError if the images are in fewer than four bins.
     void fit(std::size_t threads);
 
-    // The second pass, of the same planes. Keeps 20 bytes a sample.
+    // The second pass, with the same planes. Keeps 20 bytes per sample.
     void learn_spread(std::span<const float> plane, double altitude_m);
     void end();
 

@@ -12,8 +12,8 @@
 //            E = sqrt(S / (h (h-1))), h = n - 2g             Yuen 1974; S: the sum of squares
 //            about the mean after each sample cut off has become the nearest one kept
 //
-// Both follow as well where x is not normal; the median's is coarse under some ten samples. With
-// trim = 0 the trimmed mean and its error are the mean's. Equal samples give E = 0.
+// Both remain valid if x is not normal; the median's is coarse below some ten samples. With trim =
+// 0 the trimmed mean and its error are the mean's. Equal samples give E = 0.
 //
 // A sample that is NaN was not observed. A place never observed is NaN with count 0; the error of
 // fewer than two samples (trimmed: kept) is NaN.
@@ -40,13 +40,13 @@ struct Observed {
     std::vector<float> count;  // whole numbers, as an EXR holds them
 };
 
-// The mean of images that come one by one (Welford's sums in double): 20 bytes a sample, however
-// many the images. It depends on their order by roundings of doubles alone.
+// The mean of images that come one by one (Welford's sums in double): 20 bytes per sample, however
+// many the images. Their order matters only to the rounding of doubles.
 class RunningMean {
   public:
     explicit RunningMean(std::size_t samples);
 
-    void add(std::span<const float> image);  // as many samples as were announced
+    void add(std::span<const float> image);  // the announced number of samples
     [[nodiscard]] Observed observed() const;
 
   private:
@@ -55,22 +55,22 @@ class RunningMean {
     std::vector<std::uint32_t> count_;
 };
 
-// Any average of images that are all at hand, each of as many samples. Exact: nothing is binned.
-// trim: 0 to below 0.5, of Average::Trimmed. The result does not depend on the threads.
+// Any average of images that are all available, each with as many samples. Exact: nothing is
+// binned. trim: 0 to below 0.5, for Average::Trimmed. The result does not depend on the threads.
 [[nodiscard]] Observed average_of(std::span<const std::vector<float>> images,
                                   Average average,
                                   double trim,
                                   int threads);
 
-// Planes R, G and B of what was averaged of images like this one: of a mosaic each sample in the
-// plane of its site's channel, and `elsewhere` at the sites of the others; of a mono camera all
-// three alike.
+// Planes R, G and B of the average of images like this one: for a mosaic each sample in the plane
+// of its site's channel, and `elsewhere` at the sites of the others; for a mono camera all three
+// equal.
 [[nodiscard]] std::vector<float> by_channel(const std::vector<float>& samples,
                                             const RawImage& like,
                                             float elsewhere);
 
-// So that images of brighter and of darker exposures, floors and altitudes count alike: their
-// pattern alone is left. An InputError when the mean of its samples is not above 0.
+// Gives brighter and darker exposures, floors and altitudes the same weight: only their pattern is
+// left. An InputError if the mean of its samples is not above 0.
 void divide_by_own_mean(RawImage& image);
 
 // How many samples of each of so many images fit into so much memory, at least one.

@@ -86,7 +86,7 @@ std::vector<float> BaselineCorrector::without_pattern(const std::vector<float>& 
 
 RawImage BaselineCorrector::corrected(const RawImage& image, double altitude_m) const {
     if (learns() && learned(altitude_m) == 0) {
-        throw InputError("no image of the survey was learned at {:.2f} m of altitude", altitude_m);
+        throw InputError("nothing was learned at an altitude of {:.2f} m", altitude_m);
     }
     std::vector<SitePlane> planes = site_planes(image);
     for (std::size_t site = 0; site < planes.size(); ++site) {

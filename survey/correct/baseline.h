@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A correction that knows nothing of the lamps, by its name, over raw images and whole surveys. The
-// formulas and their limits stand in slow_light.h and altitude_exponential.h.
+// A named correction without a model of the lamps, for raw images and whole surveys. The formulas
+// and their limits are in slow_light.h and altitude_exponential.h.
 //
 //   illumination-reflectance  of each image alone
 //   local-equalisation        of each image alone
@@ -13,7 +13,7 @@
 //   altitude-exponential      learns over altitude an exponential for each pixel, and each pixel's
 //                             spread, in two passes
 //
-// Each channel, and each of the four sites of a mosaic, is corrected by itself. A constant image
+// Each channel, and each of the four sites of a mosaic, is corrected separately. A constant image
 // stays as it is.
 #pragma once
 
@@ -69,7 +69,7 @@ class BaselineCorrector {
     BaselineCorrector(Baseline baseline, const BaselineOptions& options)
         : baseline_(baseline), options_(options) {}
 
-    // How often every image of the survey is to be learned before the first is corrected.
+    // How many times every image of the survey must be learned before the first is corrected.
     [[nodiscard]] int passes() const {
         if (baseline_ == Baseline::AltitudeExponential) return 2;
         return baseline_ >= Baseline::LogPolynomial ? 1 : 0;
@@ -77,15 +77,15 @@ class BaselineCorrector {
     [[nodiscard]] bool learns() const { return passes() > 0; }
     [[nodiscard]] bool needs_altitude() const { return aphotic::needs_altitude(baseline_); }
 
-    // All of one size and mosaic, finite. Keeps moments, and forgets the image.
+    // All of one size and mosaic, finite. Keeps moments, and discards the image.
     void learn(const RawImage& image, double altitude_m);
-    // When all are learned. An InputError when they were too few.
+    // When all are learned. An InputError if they were too few.
     void end_pass(std::size_t threads);
 
     // Images learned in the bin of that altitude, or in all.
     [[nodiscard]] std::size_t learned(double altitude_m) const;
 
-    // An InputError when it learns and nothing was learned at that altitude.
+    // An InputError if it learns and nothing was learned at that altitude.
     [[nodiscard]] RawImage corrected(const RawImage& image, double altitude_m) const;
 
   private:

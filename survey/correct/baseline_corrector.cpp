@@ -29,7 +29,7 @@ class BaselineRun : public Corrector {
           method_(*options.baseline, options.of_baselines),
           level_alone_{.files = {}, .camera = survey.camera, .dropouts = survey.dropouts} {}
 
-    // Of all baselines, also what this one does not use.
+    // For all baselines, including options that this one does not use.
     [[nodiscard]] Json settings() const override {
         const BaselineOptions& own = options_.of_baselines;
         return {{"sigma", own.sigma},
@@ -42,7 +42,7 @@ class BaselineRun : public Corrector {
                 {"dropouts", name_of(survey_.dropouts)}};
     }
 
-    // A folder keeps its balance, so that images that come later fit the others.
+    // A folder keeps its balance, so that later images match the others.
     void look(const std::string& earlier,
               const RunWatch& watch,
               CorrectionReport& report) override {
@@ -95,13 +95,13 @@ class BaselineRun : public Corrector {
         return is_bayer(taken.raw.mosaic) ? demosaiced(result) : result;
     }
 
-    // Over the black level, at the reference exposure: what is saturated at longer ones is not
-    // white.
+    // Above the black level, at the reference exposure: samples saturated at longer exposures are
+    // not white.
     [[nodiscard]] float white_of(const SurveyImage& taken) const override {
         const float white = taken.levels.white * static_cast<float>(taken.exposure);
         if (std::isfinite(white) && white > 0.0F) return white;
         throw InputError(
-            "--white-level: found {} over the black level; allowed: over 0, or --format exr",
+            "--white-level: found {} above the black level; allowed: above 0, or --format exr",
             white);
     }
 
@@ -135,7 +135,7 @@ class BaselineRun : public Corrector {
                               .height_px = image.height_px,
                               .mosaic = image.mosaic};
                 }
-                require_like(image, first_, "as the first image");
+                require_like(image, first_, "like the first image");
                 const double height_m = altitude_m(survey_.files[i]);
                 if (taken.light_share == 1.0) method_.learn(image, height_m);
                 watch.progress(what, static_cast<double>(i + 1) / static_cast<double>(count));

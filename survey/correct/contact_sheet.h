@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Some images of a corrected survey, spread evenly over it, before and after, small.
+// Some images of a corrected survey, evenly spread over it, before and after, small.
 //
 //   before = sRGB( k (raw - black) )     the camera's numbers; k puts the kBrightShare quantile of
 //                                        all samples of all images at kBrightLevel (preview.h)
 //   after  = sRGB( e M b v )             as result_files.h has it, from the files as they were
 //   written
 //
-// Each with one exposure for all images: as dark and bright, and as uneven, as they are.
+// Each side has one exposure for all images, so that they show as dark, bright and uneven as they
+// are.
 #pragma once
 
 #include "survey/correct/correction_run.h"
@@ -34,8 +35,8 @@ struct SheetImage {
 inline constexpr std::size_t kMostOnSheet = 24;
 inline constexpr int kSheetPicture_px = 280;  // the longer side, at most
 
-// Of a survey that was corrected by these options. Images that were skipped, or that went since,
-// are left out.
+// For a survey corrected with these options. Images that were skipped, or have been removed since,
+// are omitted.
 [[nodiscard]] std::vector<SheetImage> contact_sheet(const Survey& survey,
                                                     const CorrectionOptions& options,
                                                     const CorrectionReport& report);

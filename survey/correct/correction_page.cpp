@@ -24,7 +24,7 @@ std::string per_channel(const PerChannel& numbers) {
         "{} red, {} green, {} blue", plain(numbers[0]), plain(numbers[1]), plain(numbers[2]));
 }
 
-// What came out.
+// The results.
 
 std::string headline(const CorrectionReport& report) {
     const RunOutcome& run = *report.run;
@@ -63,7 +63,7 @@ std::vector<PagePart> before_and_after(std::span<const SheetImage> sheet) {
             {.pictures = {picture(image.before, "before"), picture(image.after, "after")},
              .caption = named(image.name) + altitude});
     }
-    return {"Left as taken, right corrected; each under one exposure for all images.",
+    return {"Left: as taken. Right: corrected. Each side has one exposure for all images.",
             std::move(figures)};
 }
 
@@ -75,7 +75,7 @@ struct LightSeen {
     std::array<std::vector<double>, kChannels> image;  // the image's own, by its median quotient
 };
 
-// By altitude. The maps are scaled to the images: by the median of what one is of the other.
+// By altitude. The maps are scaled to the images by the median of their ratio.
 LightSeen light_seen(std::span<const ImageLook> looks) {
     std::vector<const ImageLook*> seen;
     const auto is_lit = [](double number) { return std::isfinite(number) && number > 0.0; };
@@ -119,7 +119,7 @@ std::vector<PagePart> light_over_altitude(std::span<const ImageLook> looks) {
                    .x = linear_axis_around(altitudes.least, altitudes.most, kTicks),
                    .y = log_axis(numbers.least, numbers.most)};
     panel.x.title = "altitude (m)";
-    panel.y.title = "light (the camera’s numbers over black)";
+    panel.y.title = "light (the camera’s numbers above black)";
     std::string elements = svg_axes(panel);
     PageLegend keys;
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -136,9 +136,9 @@ std::vector<PagePart> light_over_altitude(std::span<const ImageLook> looks) {
     keys.push_back({"", "dots: the images"});
     return {std::move(keys),
             PagePlot{svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)},
-            fmt::format("{} that were looked at before the run: the mean light of each one’s map, "
-                        "scaled to the images, and the light of the image by its median pixel. "
-                        "Where the rig is right, the images scatter about the lines.",
+            fmt::format("{} examined before the run: the mean light of each one’s map, scaled to "
+                        "the images, and the light of the image, by its median pixel. Where the "
+                        "rig is right, the images scatter about the lines.",
                         grouped_count(light.altitude_m.size(), "image"))};
 }
 
@@ -154,17 +154,17 @@ PageList gains(const CorrectionReport& report) {
                                ? "the command line"
                                : grouped_count(report.gain.images.size(), "image"));
     }
-    items.emplace_back("the survey’s middle becomes", per_channel(report.gain.middle));
+    items.emplace_back("the survey’s median becomes", per_channel(report.gain.middle));
     if (report.srgb) {
         items.emplace_back("exposure of sRGB", plain(report.srgb->exposure));
         if (const auto& camera = report.srgb->camera) {
-            items.emplace_back("colours of sRGB",
-                               fmt::format("{:.1f} CIELAB units off in the mean of {}, {:.1f} at "
-                                           "most ({})",
-                                           camera->mean_delta_e(),
-                                           grouped_count(camera->surfaces.size(), "surface"),
-                                           camera->worst().delta_e,
-                                           camera->worst().name));
+            items.emplace_back(
+                "colours of sRGB",
+                fmt::format("{:.1f} CIELAB units off on average over {}, {:.1f} at most ({})",
+                            camera->mean_delta_e(),
+                            grouped_count(camera->surfaces.size(), "surface"),
+                            camera->worst().delta_e,
+                            camera->worst().name));
         }
     }
     return items;
@@ -202,7 +202,7 @@ std::vector<PagePart> parts_of_images(const std::vector<Image>& images) {
         items.emplace_back(images[i].image, why_of(images[i]));
     std::vector<PagePart> parts{std::move(items)};
     if (images.size() > kMostRows) {
-        parts.emplace_back(fmt::format("The first {} of {}; {} has all.",
+        parts.emplace_back(fmt::format("The first {} of {}; {} lists all.",
                                        kMostRows,
                                        grouped(images.size()),
                                        kCorrectionNotes));
@@ -232,7 +232,7 @@ std::string correction_html(const Survey& survey,
          .heading = title,
          .is_good = run.skipped.empty() && report.looks_wrong.empty(),
          .headline = headline(report),
-         .said = {fmt::format("{} in this run, which took {} s; {} kept from before.",
+         .said = {fmt::format("{} in this run, which took {} s; {} kept from earlier runs.",
                               grouped(run.corrected),
                               plain(std::round(10.0 * report.seconds) / 10.0),
                               grouped(run.kept))},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What became of a survey, as one page to look at: images before and after, light over altitude,
-// gains, doubtful pixels, what was skipped and why, warnings, settings, the rig. It fetches
-// nothing: pictures are within.
+// The result of a survey's correction, as one page: images before and after, light over altitude,
+// gains, doubtful pixels, skipped images and why, warnings, settings, the rig. It is
+// self-contained: pictures are embedded.
 #pragma once
 
 #include "survey/correct/contact_sheet.h"

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Their text stands for all that results depend on, images, poses and what is learned aside.
+// Their text covers everything that results depend on, except images, poses and what is learned.
 Json settings_of(const Survey& survey,
                  const CorrectionOptions& options,
                  const Corrector& corrector) {
@@ -113,7 +113,7 @@ CorrectionReport correct_survey(const Survey& survey,
     report.settings_sha256 = sha256_of_text(report.settings.dump());
     const fs::path notes = folder / (options.baseline ? kBaselineNotes : kCorrectionNotes);
     corrector->look(text_in(notes), watch, report);
-    // Before the first image: also what an interrupted run leaves is no survey.
+    // Before the first image, since the remains of an interrupted run are not a survey either.
     write_text_file(notes, json_text(to_json(report)));
     const ImageWork work{
         .inputs = [&,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A survey's images, each corrected (corrector.h) and written. What is left in the folder of
-// results beside the images:
+// Corrects (corrector.h) and writes a survey's images. Besides the images, the folder of results
+// gets:
 //
 //   correction.json   settings, gain, counts, which images were skipped and why: the report below;
 //                     of a baseline, baseline.json
@@ -16,8 +16,8 @@ namespace aphotic {
 [[nodiscard]] nlohmann::ordered_json to_json(const CorrectionReport& report);
 
 // Each of the jobs' threads holds one image, its map and its result. Images that are corrected
-// already stay as they are; the same images give the same files, bit for bit. A baseline does not
-// ask for the survey's light.
+// already are left as they are; the same images give the same files, bit for bit. A baseline does
+// not use the survey's light.
 CorrectionReport correct_survey(const Survey& survey,
                                 const CorrectionOptions& options,
                                 const RunWatch& watch);

@@ -28,7 +28,7 @@ bool is_number(double number) {
     return std::isfinite(number) && number > 0.0;
 }
 
-// What correct_survey() wrote. An nlohmann exception when it is something else.
+// Parses correct_survey()'s notes. An nlohmann exception for anything else.
 std::optional<SurveyGain> gain_in(const nlohmann::json& notes) {
     SurveyGain noted{.gain = notes.at("gain").get<PerChannel>(),
                      .middle = notes.at("settings").at("middle").get<PerChannel>(),
@@ -38,7 +38,7 @@ std::optional<SurveyGain> gain_in(const nlohmann::json& notes) {
     return is_gain ? std::optional(noted) : std::nullopt;
 }
 
-// What tells cameras and rigs apart; of one map for all, no rig_sha256.
+// Identifies cameras and rigs; with one map for all, no rig_sha256.
 std::string text_in(const nlohmann::json& settings, const char* key) {
     const auto found = settings.find(key);
     return found != settings.end() && found->is_string() ? found->get<std::string>() : "";
@@ -64,11 +64,12 @@ void compare_light(const nlohmann::json& settings,
     }
     if (text_in(settings, has_rig ? "rig_sha256" : "map_sha256") != light.digest) {
         doubts.push_back(
-            {"gain-from", folder + (has_rig ? ": the rig there is another" : ": another map")});
+            {"gain-from",
+             folder + (has_rig ? ": made with a different rig" : ": made with a different map")});
     }
 }
 
-// A gain is of numbers between these.
+// A gain is valid for numbers between these.
 void compare_levels(const nlohmann::json& settings,
                     const CameraNumbers& camera,
                     const std::string& folder,
@@ -88,15 +89,15 @@ void compare_levels(const nlohmann::json& settings,
     }
 }
 
-// A warning about the navigation, as of a track that still grows, is none about the gain.
+// A warning about the navigation, such as a track that still grows, does not concern the gain.
 bool looked_wrong(const nlohmann::json& notes) {
     return std::ranges::any_of(notes.at("looks_wrong"), [](const nlohmann::json& one) {
         return one.at("about") != std::string(kAboutNavigation);
     });
 }
 
-// What is found in notes of these settings; nothing in others, or in what correct_survey() did not
-// write.
+// What notes with these settings contain; empty for others, or for notes that correct_survey() did
+// not write.
 template <typename Kept, typename Find>
 std::optional<Kept> kept_of(std::string_view text,
                             const nlohmann::ordered_json& settings,
@@ -129,7 +130,7 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     if (gain.images.empty()) {
         throw InputError(
-            "no gain can be taken from these images: of {} looked at, none has light and a map in "
+            "no gain can be derived from these images: of {} examined, none has light and a map in "
             "every channel; allowed: --gain{}{}",
             look.count,
             look.first_why.empty() ? "" : "; ",
@@ -167,7 +168,7 @@ SurveyGain gain_of_notes(std::string_view text,
         gain.reset();
     }
     if (!gain) {
-        throw InputError("{}: tells of no gain; allowed: as correct wrote it", where);
+        throw InputError("{}: contains no gain; allowed: as `correct` wrote it", where);
     }
     gain->folder = folder;
     return *gain;
@@ -179,7 +180,7 @@ SurveyGain gain_of_folder(const std::filesystem::path& folder,
                           std::vector<Suspicion>& doubts) {
     const std::filesystem::path file = folder / kCorrectionNotes;
     if (!std::filesystem::exists(file)) {
-        throw InputError("--gain-from: {}: holds no {}; allowed: a folder that correct wrote",
+        throw InputError("--gain-from: {}: contains no {}; allowed: a folder that `correct` wrote",
                          folder.string(),
                          kCorrectionNotes);
     }
@@ -189,7 +190,7 @@ SurveyGain gain_of_folder(const std::filesystem::path& folder,
 PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
     constexpr std::size_t kImages = 16;
     const std::size_t count = std::min(kImages, survey.files.size());
-    std::vector<PerChannel> middles(count);  // 0 of those that cannot be read
+    std::vector<PerChannel> middles(count);  // 0 for those that cannot be read
     parallel_for(count, jobs, [&](std::size_t i, std::size_t) {
         try {
             const SurveyImage taken = read_survey_image(
@@ -200,7 +201,7 @@ PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
                                 .samples = std::vector<float>(kChannels * raw.pixels(), 1.0F)};
             middles[i] = middle_quotient(raw, even, taken.levels, 0.0);
         } catch (const InputError&) {
-            // It is said of the image when its turn comes.
+            // The image is reported when its turn comes.
         }
     });
     std::erase_if(middles, [](const PerChannel& m) { return !std::ranges::all_of(m, is_number); });
@@ -230,7 +231,7 @@ PerChannel wanted_middle(const Survey& survey, const CorrectionOptions& options)
     return {middle, middle, middle};
 }
 
-// By the user, as numbers or as the folder that has them.
+// The user's gain, as numbers or as a folder that has them.
 std::optional<SurveyGain> given_gain(const Survey& survey,
                                      const CorrectionOptions& options,
                                      std::vector<Suspicion>& doubts) {
@@ -242,7 +243,7 @@ std::optional<SurveyGain> given_gain(const Survey& survey,
                       .middle = wanted_middle(survey, options)};
 }
 
-// Of a gain by itself nobody knows how much light the survey's middle has.
+// With a given gain, how much light the survey's median has is unknown.
 bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
     return !gain.images.empty() || options.middle;
 }
@@ -252,7 +253,7 @@ class ModelCorrector : public Corrector {
     ModelCorrector(const Survey& survey, const CorrectionOptions& options)
         : survey_(survey), options_(options), given_(given_gain(survey, options, doubts_)) {}
 
-    // Their text, changed, does every image of every folder anew.
+    // A change to these texts makes every folder's images be redone.
     [[nodiscard]] Json settings() const override {
         const LightAt& light = survey_.light;
         Json json{{survey_.navigation || survey_.depth ? "rig_sha256" : "map_sha256", light.digest},
@@ -281,8 +282,8 @@ class ModelCorrector : public Corrector {
         return json;
     }
 
-    // A gain that is kept is not taken again, but the survey is looked at: it may have other images
-    // and another navigation by now.
+    // A stored gain is not derived again, but the survey is still examined: its images and
+    // navigation may have changed.
     void look(const std::string& earlier,
               const RunWatch& watch,
               CorrectionReport& report) override {
@@ -375,8 +376,8 @@ SrgbEncoding shown_as(const Survey& survey,
     if (survey.light.to_srgb) camera = survey.light.to_srgb();
     std::optional<PerChannel> middle;
     if (is_middle_known(options, gain)) middle = gain.middle;
-    // The floor was given the colour that it has by the lamps; in the light that reaches the camera
-    // it has another, and only with that one is grey grey.
+    // The floor was assigned its colour under the lamps; in the light that reaches the camera it
+    // has another, and only with that one is grey grey.
     PerChannel balance{1.0, 1.0, 1.0};
     const auto& by_lamps = survey.light.floor_colour;
     const auto& in_water = survey.light.floor_colour_in_water;

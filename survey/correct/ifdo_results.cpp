@@ -103,8 +103,8 @@ fs::path ifdo_place(const fs::path& source, const fs::path& folder) {
     if (source.filename() == kCorrectionNotes || source.filename() == kBaselineNotes ||
         source.filename() == kJournal) {
         throw InputError(
-            "--ifdo: found a file named {}; allowed: any other name, as the results' is "
-            "named after it",
+            "--ifdo: found a file named {}; allowed: any other name, since the results' iFDO takes "
+            "the name",
             source.filename().string());
     }
     return place;

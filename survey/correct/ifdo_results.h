@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The iFDO of corrected images, from that of the raw ones: each item under its result's name, those
-// of images that were skipped left out, and all as it was but for
+// The iFDO of corrected images, from that of the raw ones: each item under its result's name,
+// without skipped images, and everything unchanged except
 //
 //   image-uuid, image-set-uuid     others, for these are other images: from the old one and the
 //                                  SHA-256 of the result, of all results for the set's
@@ -37,12 +37,12 @@ struct IfdoResults {
     std::vector<std::string> without_item{};  // results that the iFDO knows no image of
 };
 
-// Where it goes: into the folder of results, under its own name. An InputError when that is where
-// it came from, or where notes of the correction go.
+// Where it goes: into the folder of results, under its own name. An InputError if that is where it
+// came from, or where the correction's notes go.
 [[nodiscard]] std::filesystem::path ifdo_place(const std::filesystem::path& source,
                                                const std::filesystem::path& folder);
 
-// What became of the survey's images stands in the report. rig: null when one map was for all.
+// The report tells what happened to the survey's images. rig: null if one map was used for all.
 IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
                                   const std::filesystem::path& place,
                                   const Survey& survey,

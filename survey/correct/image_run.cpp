@@ -22,14 +22,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The file itself, whatever links lead to it; of links that go in a circle, their own place.
+// The file itself, with links resolved; for circular links, their own path.
 fs::path place_of(const fs::path& file) {
     std::error_code circle;
     fs::path place = fs::weakly_canonical(file, circle);
     return circle ? fs::absolute(file).lexically_normal() : place;
 }
 
-// An image in a folder of the survey that is called as that of the encoded ones.
+// An image in a folder of the survey with the name of the encoded results' folder.
 void require_separate_results(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
     std::map<fs::path, const ImageFile*> makers;
     for (const ImageFile& file : files) {

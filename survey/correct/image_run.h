@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work on every image of a survey, some at a time, that can be stopped at any moment and given
-// again: what is done is noted in the folder of results as it is done (work_folder.h), and an image
-// that cannot be used costs no other.
+// Work on every image of a survey, several at a time, which can be interrupted at any moment and
+// restarted: finished images are recorded in the folder of results (work_folder.h), and an unusable
+// image does not affect the others.
 //
-// An image is left as it is when its source (size and time) and all that its result depends on are
-// what was noted, and its files are there in the noted size.
+// An image is left as it is if its source (size and time) and everything that its result depends on
+// are as recorded, and its files exist in the recorded size.
 #pragma once
 
 #include "base/work_folder.h"
@@ -31,29 +31,29 @@ struct ImageRunOptions {
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// An InputError when two images would have one result, or a result would take the place of one of
-// the images.
+// An InputError if two images would have one result, or if a result would overwrite one of the
+// images.
 void require_results_apart(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
-// Results that shares of the images (base/work_folder.h) left below the folder, taken into it with
-// their notes: the run that follows finds them done, and does what no share has. Returns how many
-// images it took. A RunError where this machine still works on a share. What stays of the shares'
-// folders is what is not ours.
+// Moves results that shares of the images (base/work_folder.h) left below the folder into it, with
+// their notes: the next run finds them done, and does what no share has. Returns the number of
+// images moved. A RunError if this machine still works on a share. Files that are not ours stay in
+// the shares' folders.
 std::size_t join_shares(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
-// Of the file as it is now: size and time. An InputError when it vanished since it was listed: one
-// bad image.
+// The file's current size and time. An InputError if it vanished since it was listed: one bad
+// image.
 [[nodiscard]] std::string state_of(const std::filesystem::path& image);
 
-// An InputError that these throw is of one image, which is skipped.
+// An InputError that these throw concerns one image, which is skipped.
 struct ImageWork {
-    // All that the image's result depends on, the image itself aside.
+    // Everything that the image's result depends on, except the image itself.
     std::function<std::string(const ImageFile& file)> inputs;
     // Before the first image that is not done yet, if there is one.
     std::function<void()> prepare = [] {};
-    // Reads the image and writes its results; what it counted is noted. Called by several threads.
+    // Reads the image and writes its results; its counts are recorded. Called from several threads.
     std::function<Counts(const ImageFile& file)> make;
-    std::vector<std::string> strobes{};  // by whose names dropouts are told
+    std::vector<std::string> strobes{};  // whose names dropouts are reported by
 };
 
 struct RunOutcome {
@@ -68,11 +68,10 @@ struct RunOutcome {
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const RunOutcome& outcome);
 
-// Of one image, noted with what was counted in it: times that of the reference.
+// For one image, recorded with its counts: times that of the reference.
 inline constexpr const char* kExposure = "relative_exposure";
 
-// And of one that less than all strobes lit: the share of the light, and bits of those that were
-// out.
+// And for a dropout: the share of the light, and bits of the strobes that were out.
 inline constexpr const char* kLightShare = "light_share";
 inline constexpr const char* kStrobesOut = "strobes_out";
 

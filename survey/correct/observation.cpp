@@ -35,7 +35,7 @@ struct ReadImage {
     LightCells cells;
 };
 
-// The images at the altitude, and what became of the others.
+// The images at the altitude, and the reasons for omitting the others.
 struct Selection {
     std::vector<ChosenImage> images;
     std::size_t outside = 0;
@@ -45,7 +45,7 @@ struct Selection {
 
 Selection selected(const Survey& survey, const ObservationOptions& options) {
     constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
-    const ToldAngles known = survey.navigation->known();
+    const GivenAngles known = survey.navigation->known();
     Selection selection;
     for (const ImageFile& file : survey.files) {
         try {
@@ -66,7 +66,7 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
     return selection;
 }
 
-// Goes through the images in their order, and drops from the selection what cannot be used.
+// Goes through the images in order, and drops unusable ones from the selection.
 struct Pass {
     const Survey& survey;
     const ObservationOptions& options;
@@ -89,7 +89,7 @@ struct Pass {
                             .height_px = image.height_px,
                             .mosaic = image.mosaic};
                 }
-                require_like(image, like, "as the first image");
+                require_like(image, like, "like the first image");
                 use(image);
                 images[i].cells = read.cells;
                 const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
@@ -102,7 +102,7 @@ struct Pass {
         std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
     }
 
-    // Pixels whose own depth is not the altitude's, or not known.
+    // Pixels whose own depth is unknown or not at the altitude.
     void leave_out_relief(const ImageFile& file, RawImage& raw) const {
         const DepthMap map = depth_map_of(survey, file, {raw.width_px, raw.height_px});
         for (std::size_t i = 0; i < raw.samples.size(); ++i) {
@@ -125,7 +125,7 @@ struct Pass {
     }
 };
 
-// Those of less light than the others, by their level, after a pass has read all: how many.
+// Images with less light than the others, by their level, once a pass has read all: their number.
 std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& observation) {
     if (survey.dropouts == Dropouts::Ignore) return 0;
     std::vector<LightCells> cells;
@@ -143,7 +143,7 @@ std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& 
     });
 }
 
-// Once more where a first pass finds images that do not count.
+// Repeated if a first pass finds images to be dropped.
 template <typename Drop>
 Observed running_mean(Pass& pass, const Drop& drop) {
     std::optional<RunningMean> mean;
@@ -166,7 +166,7 @@ void append(std::vector<float>& to, const std::vector<float>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-// A first pass finds which images can be used at all.
+// A first pass finds which images are usable.
 template <typename Drop>
 Observed average_by_bands(Pass& pass,
                           Selection& selection,
@@ -194,7 +194,7 @@ Observed average_by_bands(Pass& pass,
             share(first),
             share(first + many));
         if (selection.skipped.size() > skipped) {
-            throw RunError("{}: changed while it was read: {}",
+            throw RunError("{}: changed while being read: {}",
                            selection.skipped.back().image,
                            selection.skipped.back().why);
         }
@@ -218,7 +218,7 @@ void require_images(const Selection& selection, const ObservationOptions& option
                                                 selection.skipped.size(),
                                                 selection.skipped.front().image,
                                                 selection.skipped.front().why);
-    throw InputError("no image to be used within {} m of {} m{}{}",
+    throw InputError("no usable image within {} m of {} m{}{}",
                      options.within_m,
                      options.altitude_m,
                      others,

@@ -7,9 +7,9 @@
 // P_i   Legendre's polynomials, for their small condition; what they span is all polynomials
 // x, y  a pixel's centre, -1 to 1 from border to border
 //
-// The fit of many images on one grid is the fit of their mean, so an image adds (order + 1)^2
-// moments and is forgotten. A plane that is itself such a polynomial comes back to the rounding of
-// floats.
+// The fit to many images on one grid is the fit to their mean, so an image adds (order + 1)^2
+// moments and is discarded. A plane that is itself such a polynomial is reproduced to the rounding
+// of floats.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ namespace aphotic {
 
 class PolynomialSurface {
   public:
-    // An InputError when the image has fewer rows or columns than the order needs, order + 1.
+    // An InputError if the image has fewer rows or columns than the order needs, order + 1.
     PolynomialSurface(int width_px, int height_px, int order);
 
     void add(std::span<const float> plane);  // width_px x height_px samples, all finite

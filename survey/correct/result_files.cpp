@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// The transfer curve by steps so fine that a line between them is within 6e-7, at the bend: a power
-// for each sample would take as long as the whole correction.
+// The transfer curve in steps so fine that linear interpolation is within 6e-7, at the bend: a
+// power for each sample would take as long as the whole correction.
 class SrgbCurve {
   public:
     SrgbCurve() {

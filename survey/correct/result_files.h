@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is made of an image, as files: the image itself in one of three formats, and when asked for
-// a mask of its doubtful pixels. Linear, with what the source says of itself.
+// The files made from an image: the image itself in one of three formats, and on request a mask of
+// its doubtful pixels. Linear, with the source's metadata.
 //
 //   tiff, png  16 bits, 65535 for 1; what does not fit is clipped, and marked
 //   exr        32-bit floats, which clip nothing
 //
-// Beside them, when asked for, the image to look at.
+// On request, the viewable image next to them.
 //
 // In a mask each pixel's 8 bits are its doubts (correction.h), 0 is good.
 #pragma once
@@ -58,7 +58,7 @@ struct SrgbFormat {
 [[nodiscard]] nlohmann::ordered_json to_json(const SrgbFormat& format);
 
 struct SrgbEncoding {
-    std::optional<CameraToSrgb> camera{};  // none: the identity
+    std::optional<CameraToSrgb> camera{};  // empty: the identity
     double exposure = 1.0;
     PerChannel balance{1.0, 1.0, 1.0};  // of the channels, before all else
 
@@ -66,7 +66,7 @@ struct SrgbEncoding {
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const SrgbEncoding& encoding);
 
-// middle: none where it is not known.
+// middle: empty if it is unknown.
 [[nodiscard]] SrgbEncoding srgb_encoding(std::optional<CameraToSrgb> camera,
                                          const std::optional<PerChannel>& middle,
                                          double stops);
@@ -80,7 +80,7 @@ struct SrgbEncoding {
 // Below the folder of results: srgb/NAME.jpg.
 [[nodiscard]] std::filesystem::path srgb_file_of(const ImageFile& file, const SrgbFormat& format);
 
-// A mosaic is demosaiced first. The file says that it is sRGB.
+// A mosaic is demosaiced first. The file is tagged as sRGB.
 void write_srgb(const std::filesystem::path& folder,
                 const ImageFile& file,
                 const CorrectedImage& result,
@@ -105,7 +105,7 @@ inline const std::map<std::string, Compression> kCompressions{
 [[nodiscard]] std::vector<std::filesystem::path> results_of(const ImageFile& file,
                                                             const ResultFormat& format);
 
-// Writes them, but for the one in sRGB, and returns how many pixels have each doubt. more:
+// Writes them, except the one in sRGB, and returns how many pixels have each doubt. more:
 // attributes of an EXR.
 Counts write_results(const std::filesystem::path& folder,
                      const ImageFile& file,

@@ -29,7 +29,7 @@ struct BoxFilter {
 };
 
 // The longest box of whole samples whose variance is not above the wanted one, (L^2 - 1) / 12; its
-// ends make up what is missing.
+// ends provide the rest.
 BoxFilter box_of(double variance) {
     BoxFilter box{.radius = static_cast<int>((std::sqrt(12.0 * variance + 1.0) - 1.0) / 2.0)};
     const double r = box.radius;
@@ -161,7 +161,7 @@ std::size_t bin_at(double place) {
     return std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(kBins - 1));
 }
 
-// What is cut off falls on all bins alike, those at the limit included, as Zuiderveld has it.
+// The excess is spread over all bins equally, including those at the limit, as in Zuiderveld.
 Shares shares_of(const std::array<double, kBins>& counts, double samples, double clip) {
     const double limit = clip * samples / kBins;
     double cut = 0.0;
@@ -180,7 +180,7 @@ double share_below(const Shares& shares, double place) {
     return shares[bin] + within * (shares[bin + 1] - shares[bin]);
 }
 
-// The two tiles whose centres lie about a pixel, and how far it is from the first to the second.
+// The two tiles whose centres enclose a pixel, and its position between them.
 struct Between {
     std::size_t first = 0;
     std::size_t second = 0;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Corrections of uneven light that know nothing of the lamps, but that their light changes slowly
-// over the image: what users did before they had a model, to hold it against. Each takes one plane
-// of samples, a channel or the sites of one colour of a mosaic, and keeps its brightness, so that
-// f(k I) = k f(I).
+// Corrections of uneven light that assume only that the lamps' light changes slowly over the image:
+// common practice without a model, for comparison. Each works on one plane of samples, a channel or
+// the sites of one colour of a mosaic, and keeps its brightness, so that f(k I) = k f(I).
 //
 //   divided by a pattern        I / max(p, kLeastShare mean p)  mean p
 //     illumination-reflectance    p = G I, the image itself smoothed
@@ -17,11 +16,11 @@
 // low, high  the gains of slow and of quick changes: 0 and 1 leave nothing slow, 1 and 1 change
 //            nothing
 //
-// What they cannot do: the first and the last two take whatever is broad for light, be it a lamp's
-// pattern or a pale patch of sand, and level the channels each by itself, so colour is lost with
-// it. The fitted ones know only the patterns that their polynomials can follow, and these follow no
-// edge of a cone. A polynomial can fall to 0 or below; the floor under the pattern bounds its gain
-// to 1 / kLeastShare.
+// Limits: the first and the last two take anything broad for light, be it a lamp's pattern or a
+// pale patch of sand, and level the channels separately, so colour is lost with it. The fitted ones
+// know only patterns that their polynomials can follow, and these follow no edge of a cone. A
+// polynomial can fall to 0 or below; the lower limit of the pattern bounds its gain to 1 /
+// kLeastShare.
 //
 // R. Garcia, T. Nicosevici and X. Cufi, "On the way to solve lighting problems in underwater
 // imaging", OCEANS 2002 (illumination-reflectance, homomorphic, local equalisation); H. Singh,

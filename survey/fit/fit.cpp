@@ -233,12 +233,12 @@ std::vector<std::string> words_fixed_in(const FitProblem& problem) {
 
 void require_bare_floor(const Rig& rig) {
     if (!rig.objects.empty()) {
-        throw InputError("found {}; allowed: none, for a survey shows the bare floor on average",
+        throw InputError("found {}; allowed: none, since a survey shows the bare floor on average",
                          counted(rig.objects.size(), "object"));
     }
     if (!rig.scene.empty())
         throw InputError(
-            "scene: found {}; allowed: none, for a survey shows the bare floor on average",
+            "scene: found {}; allowed: none, since a survey shows the bare floor on average",
             rig.scene.string());
     if (rig.seafloor.phong > 0.0)
         throw InputError("seafloor.phong: found {}; allowed: 0, a matt floor", rig.seafloor.phong);
@@ -314,7 +314,7 @@ std::string words_of(const FittedNumber& number) {
     std::string words =
         fmt::format("{} is not determined by this survey (+-{:.2g})", number.key, number.error);
     if (number.fly_at)
-        words += fmt::format(": as many images again at {:.2g} m would bring its error to {:.2g}",
+        words += fmt::format(": as many more images at {:.2g} m would reduce its error to {:.2g}",
                              number.fly_at->altitude_m,
                              number.fly_at->error);
     return words;

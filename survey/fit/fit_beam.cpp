@@ -105,7 +105,7 @@ FitBeam::FitBeam(FitBeamKind kind, const Beam& beam, double widest_rad, double b
         begin_table();
     } else if (kind == FitBeamKind::Cones) {
         if (beam.cones.empty())
-            throw InputError("beam '{}': found one that is no sum of cones; allowed: cones",
+            throw InputError("beam '{}': found one that is not a sum of cones; allowed: cones",
                              beam.name);
         soften_cones(block_rad);
         c_ = shares_;
@@ -120,8 +120,7 @@ FitBeam::FitBeam(FitBeamKind kind, const Beam& beam, double widest_rad, double b
     } else if (kind == FitBeamKind::Optics) {
         const auto* optics = std::get_if<BeamOptics>(&beam.pattern);
         if (optics == nullptr)
-            throw InputError("beam '{}': found one that is of no optics; allowed: optics",
-                             beam.name);
+            throw InputError("beam '{}': found one without optics; allowed: optics", beam.name);
         c_ = {std::log(optics->focal_length_m), std::log(optics->distance_m)};
         prior_ = prior_about(c_, false);
     }

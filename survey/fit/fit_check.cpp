@@ -48,21 +48,20 @@ std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& re
         found.push_back({"saturation", fmt::format("{:.2g} of all samples, left out", saturated)});
     const FitPattern& pattern = result.pattern;
     if (pattern.rms > kMostPattern && pattern.whitened > 1.0 + kPatternSigmas * pattern.chance) {
-        found.push_back(
-            {"pattern",
-             fmt::format("residuals stay in place from image to image, {:.2g} rms where "
-                         "chance makes {:.2g}: another beam, lens or water than the fit "
-                         "allows, or a wrong black level",
-                         pattern.rms,
-                         pattern.by_chance)});
+        found.push_back({"pattern",
+                         fmt::format("residuals keep a fixed pattern over all images, {:.2g} rms "
+                                     "where chance gives {:.2g}: a beam, lens or water that the "
+                                     "fit does not allow, or a wrong black level",
+                                     pattern.rms,
+                                     pattern.by_chance)});
     }
     for (const FittedNumber& one : result.numbers) {
         const double off = std::abs(one.value - one.start);
         if (is_curve(one) || off <= kFarthest * one.spread) continue;
         found.push_back(
             {"range",
-             fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} was expected: "
-                         "another beam, lens or water than the fit allows, or other poses",
+             fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} was expected: a beam, lens "
+                         "or water that the fit does not allow, or wrong poses",
                          one.key,
                          one.start,
                          one.value,

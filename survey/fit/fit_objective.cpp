@@ -395,8 +395,8 @@ FitPoint FitObjective::first_point() const {
     }
     if (images == 0.0)
         throw InputError(
-            "found no image of which half of the blocks are lit by the rig and seen; allowed: "
-            "images that are neither black nor saturated, of a rig that lights them");
+            "found no image with half of its blocks lit by the rig and observed; allowed: images "
+            "that are neither black nor saturated, of a rig that lights them");
     point.x.tail(q) = level / images;
     for (int round = 0; round < kRoundsOfTexture; ++round)
         learn_texture(terms_at(point, Curvature::Majorant), point.texture);

@@ -49,16 +49,16 @@ std::vector<std::string> verdict(const FitResult& result) {
     const FitPattern& pattern = result.pattern;
     const bool is_chance = pattern.whitened <= 1.0 + kPatternSigmas * pattern.chance;
     return {fmt::format("Correction by this rig is expected to be even to {}: the error of its "
-                        "light over this flight, but for a mean floor's level. That does not count "
-                        "what the rig does not know, such as a veil that its water lacks, or "
-                        "another lens. {} of the signal is veil.",
+                        "light over this flight, apart from the floor's mean level. It does not "
+                        "include what the rig does not model, such as a veil that its water lacks, "
+                        "or another lens. {} of the signal is veil.",
                         percent(result.unevenness),
                         percent(result.veil_share)),
-            is_chance ? fmt::format("What stays in place from image to image, {} of the light, is "
-                                    "no more than the floor's texture makes by chance.",
+            is_chance ? fmt::format("The fixed pattern over all images, {} of the light, is no "
+                                    "more than the floor's texture gives by chance.",
                                     percent(pattern.rms))
-                      : fmt::format("What stays in place from image to image, {} of the light, is "
-                                    "more than the floor's texture makes by chance, {}.",
+                      : fmt::format("The fixed pattern over all images, {} of the light, is more "
+                                    "than the floor's texture gives by chance, {}.",
                                     percent(pattern.rms),
                                     percent(pattern.by_chance))};
 }
@@ -97,7 +97,7 @@ std::vector<PagePart> confounded(const FitResult& result) {
         table.rows.push_back(
             {.cells = {pair.one, pair.other, fmt::format("{:+.2f}", pair.correlation)}});
     }
-    return {"Pairs that nearly make up for each other.", std::move(table)};
+    return {"Pairs that nearly compensate for each other.", std::move(table)};
 }
 
 // Blue where images are darker than the fit, red where they are brighter.
@@ -138,14 +138,14 @@ std::vector<PagePart> views(const FitSamples& samples, const FitResult& result) 
     for (const float off : result.pattern.logarithm) colours.push_back(pattern_colour(off));
     PageFigures pattern{
         .figures = {{.pictures = {shown(png_of(colours, width_px, height_px), "pattern")},
-                     .caption = "what stays in place"}},
+                     .caption = "fixed pattern"}},
         .are_small = true};
-    return {fmt::format("Images as they were observed, in blocks of {} pixels, and as the fitted "
-                        "rig makes them of an even floor.",
+    return {fmt::format("Images as observed, in blocks of {} pixels, and as the fitted rig "
+                        "predicts them for an even floor.",
                         samples.places.block_px),
             std::move(figures),
-            fmt::format("What all images have in common that the fit does not make: red brighter, "
-                        "blue darker, in full colour from {:.0f} % on.",
+            fmt::format("The pattern that all images share and the fit does not explain: red "
+                        "brighter, blue darker, full colour at {:.0f} % and beyond.",
                         100.0 * kShownPattern),
             std::move(pattern)};
 }
@@ -215,16 +215,15 @@ std::vector<PagePart> over_altitude(const FitResult& result) {
     panel.x.title = "altitude [m]";
     panel.y.title = "the floor's brightness, 1 on average";
     const std::string dots = "class=\"dots\" style=\"stroke-width: 6px\" " + svg_tone(0);
-    return {
-        fmt::format("How bright the floor of each image is, by the fitted light. Floors differ; "
-                    "these do by {}, and neighbouring blocks by {}.",
-                    percent(result.level_spread),
-                    percent(result.texture)),
-        PagePlot{svg_drawing("brightness",
-                             "the floor's brightness over altitude",
-                             kWidth,
-                             kHeight,
-                             svg_axes(panel) + svg_dots(panel, altitude_m, brightness, dots))}};
+    return {fmt::format("The floor's brightness in each image, by the fitted light. Floors vary: "
+                        "these by {}, and neighbouring blocks by {}.",
+                        percent(result.level_spread),
+                        percent(result.texture)),
+            PagePlot{svg_drawing("brightness",
+                                 "the floor's brightness over altitude",
+                                 kWidth,
+                                 kHeight,
+                                 svg_axes(panel) + svg_dots(panel, altitude_m, brightness, dots))}};
 }
 
 }  // namespace
@@ -250,9 +249,7 @@ void write_fit_page(const std::filesystem::path& file,
              .heading = "The floor over altitude",
              .parts = over_altitude(result)},
             {.id = "confounded", .heading = "Confounded", .parts = confounded(result)},
-            {.id = "rig",
-             .heading = "The rig that it began with",
-             .parts = {PageSource{text.text()}}}}};
+            {.id = "rig", .heading = "The starting rig", .parts = {PageSource{text.text()}}}}};
     write_text_file(file, page_html(page));
 }
 

@@ -193,8 +193,8 @@ class Problem {
                  .most = -std::log(std::ranges::max(rig_.seafloor.reflectance.values()))});
         } else if (options_.free && has(*options_.free, "floor")) {
             throw InputError(
-                "--free: found floor in water that does not scatter; allowed: without it, for only "
-                "the veil tells how bright the floor is");
+                "--free: found floor in water that does not scatter; allowed: without it, since "
+                "only the veil tells how bright the floor is");
         }
         if (rig_.camera.sensor.is_mono()) return;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -271,7 +271,7 @@ class Problem {
             });
         };
         if (numbers_.empty())
-            throw InputError("{}: found nothing that is to be fitted; allowed: a word or a key",
+            throw InputError("{}: found nothing to fit; allowed: a word or a key",
                              options_.free ? "--free" : "--hold");
         if ((options_.beam != FitBeamKind::Table || options_.has_beam_each) && !is_fitted("beam"))
             throw InputError(
@@ -285,8 +285,9 @@ class Problem {
                 throw InputError("--prior: found '{}', which is not fitted; allowed: what is free",
                                  asked);
             if (!(spread > 0.0) || !std::isfinite(spread))
-                throw InputError(
-                    "--prior: found {} of {}; allowed: a standard deviation over 0", spread, asked);
+                throw InputError("--prior: found {} of {}; allowed: a standard deviation above 0",
+                                 spread,
+                                 asked);
         }
     }
 

@@ -120,8 +120,8 @@ double number_of(const ExrReader& reader, const std::string& name, const std::st
     const auto value = read_number<double>(text);
     if (!value || !std::isfinite(*value)) {
         throw InputError(
-            "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes where "
-            "the navigation tells it",
+            "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes if the navigation "
+            "has it",
             map,
             name,
             excerpt(text));
@@ -137,8 +137,8 @@ void require_every_channel(const FitImage& image, const std::string& map) {
             is_told = is_told || std::isfinite(image.signal[k]);
         if (is_told) continue;
         throw InputError(
-            "{}: found {} at too few pixels of every block; allowed: at half of one's or more, as "
-            "`aphotic observe --demosaic` writes",
+            "{}: found {} at too few pixels of every block; allowed: at half of one's pixels or "
+            "more, as `aphotic observe --demosaic` writes",
             map,
             kChannelNames[c]);
     }
@@ -155,9 +155,8 @@ FitImage image_of_map(ExrReader& reader,
             throw InputError("{}: has no channel {}; needed: R, G, B", map, name);
     }
     RawImage raw{.width_px = reader.width_px(), .height_px = reader.height_px()};
-    naming(map, [&] {
-        require_size(raw, camera.width_px, camera.height_px, "as the rig's camera has");
-    });
+    naming(map,
+           [&] { require_size(raw, camera.width_px, camera.height_px, "like the rig's camera"); });
     raw.samples = reader.planes(names);
     FitImage image{
         .name = map,
@@ -234,7 +233,7 @@ FitSamples samples_of_images(const Survey& survey,
     CameraNumbers numbers = survey.camera;
     if (!numbers.expected) numbers.expected.emplace();
     numbers.expected->image = size;
-    numbers.expected->as = "as the rig's camera has";
+    numbers.expected->as = "like the rig's camera";
     samples.looks_wrong = suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
     std::vector<LightCells> cells;
     std::vector<std::size_t> files;  // by image
@@ -264,7 +263,7 @@ FitSamples samples_of_images(const Survey& survey,
         skip);
     leave_lit(survey, cells, files, samples, watch);
     if (samples.images.empty()) {
-        throw InputError("no image to be used; the first: {}",
+        throw InputError("no usable image; the first: {}",
                          samples.skipped.empty() ? "none" : samples.skipped.front().why);
     }
     return samples;

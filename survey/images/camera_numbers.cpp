@@ -138,8 +138,8 @@ nlohmann::ordered_json to_json(const CameraNumbers& camera) {
         json["exposure"] = {{"by", "model"}};
         return json;
     }
-    const auto number = [](std::optional<double> told) {
-        return told ? nlohmann::ordered_json(*told) : nlohmann::ordered_json();
+    const auto number = [](std::optional<double> value) {
+        return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
     };
     json["exposure"] = {{"by", camera.exposure_by == ExposureBy::Exif ? "exif" : "flash"},
                         {"time_s", number(camera.reference.time_s)},
@@ -154,7 +154,7 @@ std::optional<PlaneSize> size_if_readable(const ImageFile& file) {
     try {
         return size_in(file.source);
     } catch (const InputError&) {
-        return std::nullopt;  // it is said of the image when its turn comes
+        return std::nullopt;  // the image is reported when its turn comes
     }
 }
 
@@ -191,7 +191,7 @@ CameraNumbers expecting_usual_size(CameraNumbers camera, const std::vector<Image
     if (!file) return camera;
     const Crop crop = crop_of(camera, *file);
     camera.expected = ExpectedSize{.image = {crop.width_px, crop.height_px},
-                                   .as = "as most of the images looked at have",
+                                   .as = "like most of the images examined",
                                    .file = *file};
     return camera;
 }

@@ -82,8 +82,8 @@ bool is_other_raw(std::string_view extension) {
                      : "";
     }
     throw InputError(
-        "{}: the folder holds no image{}; allowed: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW; "
-        "others file by file",
+        "{}: the folder contains no images{}; allowed: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW; "
+        "others as single files",
         folder.string(),
         found);
 }
@@ -92,8 +92,7 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
     std::error_code none;
     if (fs::equivalent(folder, output, none)) {
         throw InputError(
-            "{}: found the folder to write to; allowed: folders of images, with the results "
-            "elsewhere",
+            "{}: found the output folder; allowed: folders of images, with the results elsewhere",
             folder.string());
     }
     const auto first = std::ssize(files);
@@ -132,7 +131,7 @@ std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
     for (const std::string& argument : arguments) {
         std::error_code none;
         if (!fs::exists(argument, none)) {
-            throw InputError("{}: there is no such file or folder", argument);
+            throw InputError("{}: no such file or folder", argument);
         }
         if (fs::is_directory(argument, none)) {
             add_folder(argument, output, files);
@@ -159,8 +158,8 @@ void require_file(const fs::path& image) {
     if (fs::is_regular_file(status)) return;
     if (fs::exists(status)) throw InputError("found a pipe, device or folder; allowed: a file");
     throw InputError(fs::is_symlink(fs::symlink_status(image, none))
-                         ? "found a link that leads nowhere; allowed: a file"
-                         : "there is no such file any more");
+                         ? "found a broken link; allowed: a file"
+                         : "the file no longer exists");
 }
 
 bool is_image_name(const fs::path& file) {

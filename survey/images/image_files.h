@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The images of a survey, from the files and folders that a user names, and where what is made of
-// each goes.
+// The images of a survey, from the files and folders that a user names, and the paths of their
+// results.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +13,12 @@ namespace aphotic {
 
 struct ImageFile {
     std::filesystem::path source;
-    // Below the output folder, without extension: the file's name, and its folders below the one
-    // that was named.
+    // Below the output folder, without extension: the file's name, and its folders below the named
+    // one.
     std::filesystem::path name;
 };
 
-// What `correct` and `baseline` leave in a folder of results, by which it is known as one.
+// The files that `correct` and `baseline` leave in a folder of results, which identify it.
 inline constexpr std::string_view kCorrectionNotes = "correction.json";
 inline constexpr std::string_view kBaselineNotes = "baseline.json";
 inline constexpr std::string_view kReportPage = "report.html";
@@ -34,12 +34,12 @@ inline constexpr const char* kSrgbFolder = "srgb";               // of images to
 [[nodiscard]] std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
                                                  const std::filesystem::path& output);
 
-// An InputError, which does not name the image, unless it is there and is a file: of a pipe one
-// would wait for ever.
+// An InputError, without the image's name, unless it exists and is a file: reading a pipe would
+// block forever.
 void require_file(const std::filesystem::path& image);
 
-// Whether the file's name ends as an image's does, such as .tif, in any letter case; and the path
-// without that.
+// Whether the file's name has an image's extension, such as .tif, ignoring case; and the path
+// without it.
 [[nodiscard]] bool is_image_name(const std::filesystem::path& file);
 [[nodiscard]] std::filesystem::path without_extension(const std::filesystem::path& file);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a camera wrote: a mosaic of one plane, whose pixels see one channel each, the one plane of a
-// mono camera, or red, green and blue planes. Samples are the camera's own numbers (0 to 4095 of a
-// 12-bit camera), linear in the light; the black level is the number that no light gives.
+// A camera's raw image: a mosaic of one plane, whose pixels see one channel each, the one plane of
+// a mono camera, or red, green and blue planes. Samples are the camera's own numbers (0 to 4095 for
+// a 12-bit camera), linear in the light; the black level is the number for no light.
 #pragma once
 
 #include "spectral/sensor.h"
@@ -15,8 +15,8 @@
 
 namespace aphotic {
 
-// Named after the four sites at the top left, row by row. Of a mono camera all sites are alike: its
-// maps, rendered or observed, have it in R, G and B.
+// Named after the four sites at the top left, row by row. For a mono camera all sites are alike:
+// its maps, rendered or observed, have equal R, G and B.
 enum class Mosaic { None, Mono, Rggb, Bggr, Grbg, Gbrg };
 
 // Whether it has sites of three kinds.
@@ -28,10 +28,10 @@ enum class Mosaic { None, Mono, Rggb, Bggr, Grbg, Gbrg };
 [[nodiscard]] std::optional<Mosaic> mosaic_named(std::string_view name);
 [[nodiscard]] std::string_view mosaic_name(Mosaic mosaic);
 
-// The channel that a site of a mosaic sees: 0, 1 or 2; 0 of mono.
+// The channel that a site of a mosaic sees: 0, 1 or 2; 0 for mono.
 [[nodiscard]] int channel_at(Mosaic mosaic, int column, int row);
 
-// The pattern that is left when so many columns and rows are cut off at the left and at the top.
+// The pattern left after cropping so many columns and rows at the left and top.
 [[nodiscard]] Mosaic shifted(Mosaic mosaic, int columns, int rows);
 
 struct RawImage {
@@ -46,11 +46,11 @@ struct RawImage {
     [[nodiscard]] int planes() const { return mosaic == Mosaic::None ? kChannels : 1; }
 };
 
-// An InputError unless it is of this size, "as the map has": of twice the width, it says what to do
-// about two cameras' images in a file.
+// An InputError unless it has this size, "like the map": if it is twice as wide, the message
+// explains how to select one of two cameras' images.
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
 
-// And unless it has this pattern, too.
+// And unless it also has this pattern.
 void require_like(const RawImage& image, const RawImage& other, std::string_view as);
 
 struct SensorLevels {
@@ -68,11 +68,10 @@ struct SensorLevels {
                                             int height_px,
                                             Mosaic mosaic);
 
-// A raw image as planes of one kind of site each, so that what works on planes works on mosaics
-// too: R, G and B of an image of colours; the one plane of a mono
-// camera; of a mosaic the four sites of its pattern, row by row,
-// each every other pixel across and down. A mosaic of odd width or height has one more site of the
-// first.
+// A raw image as planes of one kind of site each, so that code for planes works on mosaics too: R,
+// G and B of a colour image; the one plane of a mono camera; for a mosaic the four sites of its
+// pattern, row by row, each every other pixel across and down. A mosaic of odd width or height has
+// one more of the first site.
 
 struct SitePlane {
     int width_px = 0;

@@ -80,7 +80,7 @@ void require_expected(const Crop& crop, PlaneSize file, const ExpectedSize& expe
                  expected.image.height_px,
                  expected.as);
     if (pixels(file) <= std::max(pixels(expected.file), pixels(expected.image)) + kFew) return;
-    throw InputError("found {} x {} pixels in the file; allowed: about {} x {}, as the others have",
+    throw InputError("found {} x {} pixels in the file; allowed: about {} x {}, like the others",
                      file.width_px,
                      file.height_px,
                      expected.file.width_px,
@@ -91,7 +91,7 @@ void require_expected(const Crop& crop, PlaneSize file, const ExpectedSize& expe
 SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mosaic) {
     const Crop crop = crop_of(camera, file);
     if (is_bayer(mosaic) && std::min(crop.width_px, crop.height_px) < 2) {
-        throw InputError("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
+        throw InputError("found {} x {} pixels; allowed: 2 or more each way, for a mosaic",
                          crop.width_px,
                          crop.height_px);
     }

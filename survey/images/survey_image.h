@@ -17,27 +17,28 @@ struct SurveyImage {
     RawImage raw;  // in the camera's own numbers: the part of the file that is the image
     Crop crop;     // which part
     SensorLevels levels;
-    double rounding = 0.0;  // of its numbers, as a standard deviation: of floats, none
+    double rounding = 0.0;  // standard deviation of its numbers' rounding; 0 for floats
     std::string description;
     std::string date_time;
-    double exposure = 1.0;     // times the reference's: what its light is to be divided by
-    double light_share = 1.0;  // of the survey's light, that was on; and which strobes were out
+    double exposure = 1.0;  // relative to the reference: its light is divided by it
+    double light_share =
+        1.0;  // share of the survey's light that was on; and which strobes were out
     std::uint64_t strobes_out = 0;  // (survey/dropouts.h)
     SharedTags tags{};              // of the file; none: it has none
 };
 
-// An InputError when it cannot be read, has not the part that is asked for, or not the channels
-// that it should: one for a mosaic or a mono camera, else R, G and B. A raw file says its pattern
-// itself, and is refused under another. Of many images one is passed over: messages do not name it,
-// for who lists what is skipped does.
+// An InputError if it cannot be read, lacks the requested part, or does not have the expected
+// channels: one for a mosaic or a mono camera, else R, G and B. A raw file states its own pattern,
+// and is refused with another. Messages do not name the image; whoever lists the skipped images
+// does.
 [[nodiscard]] SurveyImage read_survey_image(const std::filesystem::path& file,
                                             const CameraNumbers& camera);
 
-// The size of the whole file, by its header alone. An InputError as above.
+// The size of the whole file, from its header only. An InputError as above.
 [[nodiscard]] PlaneSize size_in(const std::filesystem::path& file);
 
-// Leaves its light alone, as at the reference exposure: the black level is taken off the samples,
-// and then it is 0.
+// Reduces it to its light, at the reference exposure: the black level is subtracted from the
+// samples, and is 0 afterwards.
 void take_off_black(SurveyImage& taken);
 
 }  // namespace aphotic

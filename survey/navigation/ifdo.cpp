@@ -32,7 +32,7 @@ IfdoJson plain_scalar(const std::string& text) {
     if (is_in(kFalse)) return false;
     std::string_view digits = text;
     if (digits.starts_with('+')) digits.remove_prefix(1);
-    // Such as 007, which is octal to some readers, a number or a name to others.
+    // Such as 007, which some readers take as octal, some as a number, some as a name.
     const std::size_t first = digits.starts_with('-') ? 1 : 0;
     const bool is_padded = digits.size() > first + 1 && digits[first] == '0' &&
                            digits[first + 1] >= '0' && digits[first + 1] <= '9';
@@ -49,7 +49,7 @@ class Converter {
 
     [[nodiscard]] IfdoJson json_of(const YAML::Node& node, int depth = 0) {
         if (depth > kMostJsonDepth) fail(node, "it is nested too deeply");
-        if (left_ == 0) fail(node, "its aliases stand for more than the file could hold");
+        if (left_ == 0) fail(node, "its aliases expand to more than the file could hold");
         --left_;
         switch (node.Type()) {
             case YAML::NodeType::Scalar:
@@ -63,9 +63,9 @@ class Converter {
                 IfdoJson object = IfdoJson::object();
                 for (const auto& entry : node) {
                     const YAML::Node& key = entry.first;
-                    if (!key.IsScalar()) fail(key, "a key is not a word");
+                    if (!key.IsScalar()) fail(key, "a key is not a string");
                     if (object.contains(key.Scalar()))
-                        fail(key, fmt::format("'{}' stands twice", excerpt(key.Scalar())));
+                        fail(key, fmt::format("duplicate key '{}'", excerpt(key.Scalar())));
                     object[key.Scalar()] = json_of(entry.second, depth + 1);
                 }
                 return object;
@@ -89,7 +89,7 @@ void require_utf8(const std::string& name, std::string_view text) {
     try {
         (void)IfdoJson(text).dump();
     } catch (const IfdoJson::type_error&) {
-        throw InputError("{}: found bytes that are no UTF-8", name);
+        throw InputError("{}: found bytes that are not UTF-8", name);
     }
 }
 
@@ -109,8 +109,8 @@ void require_few_values(const std::string& name, std::string_view text) {
 }
 
 IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
-    // Without aliases a value takes two letters or more. Few of them are much longer than what
-    // they stand for.
+    // Without aliases a value takes at least two characters. Few of them are much longer than their
+    // value.
     constexpr std::size_t kMostValuesOfLetter = 4;
     constexpr std::size_t kAnyway = 1000;
     require_few_values(name, text);

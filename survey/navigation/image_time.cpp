@@ -31,7 +31,7 @@ constexpr std::array<MaskPart, 8> kMaskParts{{{"YYYY", true},
                                               {"fff", false},
                                               {"uuu", false}}};
 
-// The digits that stand where the mask has these letters.
+// The digits at the places of these letters in the mask.
 std::optional<int> part_in(std::string_view name, std::string_view mask, std::string_view letters) {
     const std::size_t at = mask.find(letters);
     if (at == std::string_view::npos) return 0;
@@ -46,7 +46,7 @@ std::string tag(const std::map<std::string, std::string>& tags, const std::strin
     return found == tags.end() ? "" : std::string(trimmed(found->second));
 }
 
-// Blanks, with or without the colon between them, are EXIF's way to say that it is not known.
+// Blanks, with or without the colon between them, mean unknown in EXIF.
 std::string zone_in(const std::map<std::string, std::string>& tags, const std::string& name) {
     const std::string zone = tag(tags, name);
     return zone.find_first_not_of(" :") == std::string::npos ? "" : zone;
@@ -67,7 +67,7 @@ void require_time_mask(const std::string& mask) {
         if (count == 0 && !is_needed) continue;
         if (count == 0) refuse(fmt::format("which has no {}", letters));
         if (count != letters.size() || mask.find(letters) == std::string::npos)
-            refuse(fmt::format("which has not {} in one place", letters));
+            refuse(fmt::format("in which {} is split", letters));
     }
     if (mask.find('u') != std::string::npos && mask.find('f') == std::string::npos)
         refuse("which has uuu without fff");
@@ -116,7 +116,7 @@ ImageTime image_time(const std::filesystem::path& image, const std::string& mask
     if (!mask.empty()) {
         if (const auto time_s = time_by_mask(without_extension(name).string(), mask))
             return {*time_s};
-        throw InputError("its name has no time where --image-time {} has it", mask);
+        throw InputError("its name has no time where --image-time {} expects it", mask);
     }
     require_file(image);
     const std::map<std::string, std::string> tags = header_of_image(image);
@@ -127,8 +127,8 @@ ImageTime image_time(const std::filesystem::path& image, const std::string& mask
     }
     if (const auto time_s = time_in_habcam_name(name)) return {*time_s};
     throw InputError(
-        "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
-        "--image-time says where its name has the time");
+        "it has no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
+        "--image-time gives the time's place in its name");
 }
 
 }  // namespace aphotic

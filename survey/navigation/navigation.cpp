@@ -135,9 +135,9 @@ std::string fault_of(const Sled& sled) {
 
 Navigation::Navigation(std::string source,
                        const std::vector<ImagePose>& poses,
-                       ToldAngles told,
+                       GivenAngles given,
                        ImagesKnownBy known_by)
-    : source_(std::move(source)), told_(told), known_(told), known_by_(known_by) {
+    : source_(std::move(source)), given_(given), known_(given), known_by_(known_by) {
     for (const ImagePose& pose : poses) {
         if (pose.image.empty()) {
             if (nameless_line_ == 0) nameless_line_ = pose.line;
@@ -147,7 +147,7 @@ Navigation::Navigation(std::string source,
         const auto [first, is_new] = poses_.try_emplace(key, pose);
         if (is_new) continue;
         first->second.fault =
-            fmt::format("the image '{}' stands twice{}",
+            fmt::format("duplicate image '{}'{}",
                         excerpt(key),
                         pose.line > 0 ? fmt::format(", also on line {}", pose.line) : "");
     }
@@ -163,7 +163,7 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
         throw InputError(
             "{} has no line for it{}",
             source_,
-            nameless_line_ > 0 ? fmt::format("; line {} has no image's name", nameless_line_) : "");
+            nameless_line_ > 0 ? fmt::format("; line {} names no image", nameless_line_) : "");
     }
     const ImagePose& pose = found->second;
     const Sled& sled = pose.sled;
@@ -197,7 +197,7 @@ bool Navigation::tells_depth() const {
 
 void Navigation::mount(const Mounting& mounting) {
     for (auto& [key, pose] : poses_) {
-        // Of the vehicle: what no vehicle can have is said in its own numbers.
+        // For the vehicle: an impossible pose is reported in its own numbers.
         if (!pose.fault.empty() || !fault_of(pose.sled).empty()) continue;
         try {
             pose.place = camera_place(pose.place, pose.sled, mounting);

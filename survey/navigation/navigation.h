@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the sled was when each image was taken. It is made of poses, by the reader of navigation
+// The sled's pose when each image was taken. It is built from poses, by the reader of navigation
 // (navigation_file.h) or by any program that knows them.
 //
 //   altitude  along the camera's axis      pitch  positive bow up      roll  positive starboard
 //   down
 //
-// An image is known by its file name without folder and without an image's extension, so that a
-// pose still holds when raw images were converted; or, where poses are of the files themselves, by
-// its path. An image that stands twice has no pose.
+// An image is identified by its file name without folder and image extension, so that a pose still
+// holds after raw images were converted; or, if poses are in the files themselves, by its path. An
+// image that occurs twice has no pose.
 #pragma once
 
 #include "rig/rig.h"
@@ -28,12 +28,12 @@
 
 namespace aphotic {
 
-// What a survey's navigation was taken for: the format, which of its columns say what, in which
-// unit, and how its poses became the camera's.
+// How a survey's navigation was interpreted: the format, the columns used, their units, and how its
+// poses became the camera's.
 
 enum class AngleUnit { Degrees, Radians };
 
-// Where images are found in a track, by their times.
+// How images are found in a track, by their times.
 struct TimesOfImages {
     std::string mask{};  // of their names; empty: EXIF, or HabCam's names
     double clock_offset_s = 0.0;
@@ -45,11 +45,11 @@ struct NavigationNotes {
     std::string format{};
     std::vector<std::pair<std::string, std::string>> columns{};  // our name, the file's
     AngleUnit angles_in = AngleUnit::Degrees;
-    std::optional<TimesOfImages> times{};  // none: images have their names in the file
+    std::optional<TimesOfImages> times{};  // empty: images have their names in the file
     Mounting mounting{};
 };
 
-// All that poses depend on, lines left out aside: a file may grow.
+// Everything that poses depend on, except omitted lines: a file may grow.
 [[nodiscard]] nlohmann::ordered_json to_json(const NavigationNotes& notes);
 
 // "oplab's CSV: image 'relative_path', ...; metres, degrees; altitude: along the axis"
@@ -63,14 +63,14 @@ struct ImagePose {
     Place place{};         // where the source tells it, and is asked to
 };
 
-// Whether the source tells the angles, for the whole survey; else poses have another's, as the
+// Whether the source has the angles, for the whole survey; otherwise poses have others, such as the
 // rig's.
-struct ToldAngles {
+struct GivenAngles {
     bool pitch = true;
     bool roll = true;
 };
 
-// Why no sled has this pose, as with the zeros and NaN of an altimeter that lost the floor; or
+// Why no sled has this pose, such as the zeros and NaN of an altimeter that lost the floor; or
 // empty.
 [[nodiscard]] std::string fault_of(const Sled& sled);
 
@@ -78,14 +78,14 @@ enum class ImagesKnownBy { Name, Path };
 
 class Navigation {
   public:
-    // source stands in messages, such as the file's name.
+    // source is for messages, such as the file's name.
     Navigation(std::string source,
                const std::vector<ImagePose>& poses,
-               ToldAngles told = {},
+               GivenAngles given = {},
                ImagesKnownBy known_by = ImagesKnownBy::Name);
 
-    // The pose of an image file. An InputError when there is none, it has a fault, or its numbers
-    // are none that a sled can have: that is of one image, and the others can do without it.
+    // The pose of an image file. An InputError if there is none, it has a fault, or its numbers are
+    // impossible for a sled: that concerns one image, and the others can be used without it.
     [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
 
     // The name that stands in messages.
@@ -94,26 +94,26 @@ class Navigation {
     // From now on poses, which were the vehicle's, are the camera's.
     void mount(const Mounting& mounting);
 
-    // From now on an image from beyond has no pose.
+    // Images outside this range no longer have a pose.
     void limit_altitude(double least_m, double most_m);
 
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
-    // All that it knows a pose of, as the source has them, in its order.
+    // All its poses, as the source has them, in its order.
     [[nodiscard]] std::vector<std::string> images() const;
-    [[nodiscard]] const ToldAngles& told() const { return told_; }
+    [[nodiscard]] const GivenAngles& given() const { return given_; }
 
     // Whether any pose has the vehicle's depth.
     [[nodiscard]] bool tells_depth() const;
 
     // Which angles poses have from anywhere: the source, or a rig that stands in for it.
-    [[nodiscard]] const ToldAngles& known() const { return known_; }
+    [[nodiscard]] const GivenAngles& known() const { return known_; }
     void take_angles_of_rig() { known_ = {.pitch = true, .roll = true}; }
 
-    // None when no reader told.
+    // Null if no reader set them.
     [[nodiscard]] const std::optional<NavigationNotes>& notes() const { return notes_; }
     void note(NavigationNotes notes) { notes_ = std::move(notes); }
 
-    // What may be wrong though it can be read, each with the source's name.
+    // Possible problems in readable navigation, each with the source's name.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
     void warn(std::string what) { warnings_.push_back(std::move(what)); }
 
@@ -121,8 +121,8 @@ class Navigation {
     [[nodiscard]] std::string key_of(const std::string& image) const;
 
     std::string source_;
-    ToldAngles told_;
-    ToldAngles known_;
+    GivenAngles given_;
+    GivenAngles known_;
     ImagesKnownBy known_by_;
     std::optional<NavigationNotes> notes_{};
     std::vector<std::string> warnings_{};
@@ -132,7 +132,7 @@ class Navigation {
     std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
 };
 
-// Of these images' poses the highest; none where no image has one.
+// The highest pose of these images; empty if no image has one.
 [[nodiscard]] std::optional<Sled> highest_pose(const Navigation& navigation,
                                                const std::vector<ImageFile>& files);
 

@@ -21,14 +21,14 @@ namespace aphotic {
 
 namespace {
 
-// What loggers, databases and spreadsheets write when they know no number, besides NaN itself.
+// How loggers, databases and spreadsheets write an unknown number, besides NaN itself.
 bool is_unknown(std::string_view field) {
     static constexpr std::array<std::string_view, 8> kUnknown{
         "", "-", "na", "n/a", "#n/a", "null", "none", "1.#qnan"};
     return std::ranges::find(kUnknown, lower_case(std::string(field))) != kUnknown.end();
 }
 
-// 2,15, as spreadsheets of half of Europe write it.
+// 2,15, as spreadsheets in half of Europe write it.
 bool has_decimal_comma(std::string_view field) {
     const std::size_t comma = field.find(',');
     return comma != std::string_view::npos && comma > 0 && comma + 1 < field.size() &&
@@ -73,7 +73,7 @@ std::vector<KnownFormat> formats_in(std::string_view json) {
     return formats;
 }
 
-// PANGAEA's stands last, and by itself: its altitude [m], for one, is over the sea level.
+// PANGAEA's comes last, and separately: its altitude [m], for one, is above sea level.
 std::span<const KnownFormat> formats_of(const HeaderRequest& request) {
     static const std::vector<KnownFormat> kFormats = formats_in(navigation_formats().front().json);
     const std::span<const KnownFormat> all(kFormats);
@@ -94,7 +94,7 @@ std::string is_it(std::string_view wanted, const Header& header) {
     return near.empty() ? "" : fmt::format(" (is it '{}'?)", printable(near));
 }
 
-// A header may be no header at all, but a line of any length.
+// A header may not be a header at all, but a line of any length.
 std::string shown_columns(const Header& header) {
     constexpr std::size_t kMostLetters = 400;
     std::string words;
@@ -145,8 +145,8 @@ bool has_pose_and_name(const NavigationColumns& columns) {
            (columns.place(NavigationField::Image) || columns.place(NavigationField::Time));
 }
 
-// The format with most of the columns that are its own: image, else altitude, else time, in which
-// --columns may have put others in the place of the rest.
+// The format with most of its own columns present: image, else altitude, else time, where --columns
+// may have replaced the rest.
 std::optional<NavigationColumns> recognised(const NavigationColumns& given,
                                             std::span<const KnownFormat> formats,
                                             const Header& header) {
@@ -192,7 +192,7 @@ std::optional<NavigationColumns> recognised(const NavigationColumns& given,
                  sea);
 }
 
-// Of an angle under another name, the rig's would be taken and nobody be told.
+// With an angle under another name, the rig's would be used silently.
 void require_known_angles(const HeaderRequest& request,
                           const Header& header,
                           const NavigationColumns& columns) {
@@ -222,7 +222,7 @@ std::string unit_in(std::string_view column) {
     return lower_case(std::string(trimmed(column.substr(start + 1))));
 }
 
-// What --columns names may say that it is something else than it is taken for.
+// A column named by --columns may state another unit than it would be read in.
 void require_units(const HeaderRequest& request, const NavigationColumns& columns) {
     static const std::set<std::string> kLengths{
         "mm", "cm", "dm", "km", "ft", "feet", "foot", "inch", "inches", "fathoms", "fm"};
@@ -258,18 +258,18 @@ bool is_navigation_header(const HeaderRequest& request, const Header& header) {
 
 NavigationColumns navigation_columns(const HeaderRequest& request, const Header& header) {
     require_given(request, header);
-    const NavigationColumns told = given_columns(header, request.given);
-    std::optional<NavigationColumns> columns = recognised(told, formats_of(request), header);
-    if (!columns) refuse_header(request, header, told);
+    const NavigationColumns given = given_columns(header, request.given);
+    std::optional<NavigationColumns> columns = recognised(given, formats_of(request), header);
+    if (!columns) refuse_header(request, header, given);
     // One of them says where the images are; which, --columns may choose.
     auto& image = columns->places[0];
     auto& time = columns->places[1];
     constexpr auto kFirstOfPlace = static_cast<std::ptrdiff_t>(NavigationField::East);
     if (!request.has_places)
-        std::copy(told.places.begin() + kFirstOfPlace,
-                  told.places.end(),
+        std::copy(given.places.begin() + kFirstOfPlace,
+                  given.places.end(),
                   columns->places.begin() + kFirstOfPlace);
-    if (image && told.place(NavigationField::Time) && !told.place(NavigationField::Image))
+    if (image && given.place(NavigationField::Time) && !given.place(NavigationField::Image))
         image.reset();
     if (image) time.reset();
     require_known_angles(request, header, *columns);
@@ -281,10 +281,8 @@ NavigationColumns navigation_columns(const HeaderRequest& request, const Header&
         if (!place) continue;
         columns->names.at(field) = header[*place];
         if (std::ranges::count(names, names[*place]) > 1) {
-            fail_at_line(request.file,
-                         request.line,
-                         "the column '{}' stands twice",
-                         printable(header[*place]));
+            fail_at_line(
+                request.file, request.line, "duplicate column '{}'", printable(header[*place]));
         }
     }
     require_units(request, *columns);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which columns of a table are what, by their names in the formats that surveys come in, whatever
-// their letter case:
+// The meaning of a table's columns, by their names in the formats of surveys, ignoring case
 // (formats.json): Aphotic's, oplab's, BIIGLE's and SQUIDLE+'s CSV, HabCam's .img, PANGAEA's tab
-// files, and any table whose names say enough, with units where they are in doubt.
+// files, and any table whose names are clear enough, with units if in doubt.
 //
 // Where the vehicle was is read on request alone: east and north in metres of any one frame, the
 // heading clockwise from north, the depth below the sea level. x and y are of no certain direction,
@@ -28,9 +27,9 @@
 
 namespace aphotic {
 
-// A number of a pose, as tables and tags hold it.
+// A number of a pose, as in tables and tags.
 
-// NaN when the field says that nobody knows it, as by None or an empty cell; what is neither is a
+// NaN if the field says unknown, by None or an empty cell; anything else that is not a number is a
 // fault of the pose.
 [[nodiscard]] double number_in(ImagePose& pose, std::string_view column, std::string_view field);
 
@@ -60,7 +59,7 @@ struct NavigationColumns {
     [[nodiscard]] const std::string& name(NavigationField field) const {
         return names.at(static_cast<std::size_t>(field));
     }
-    // Images are found by their times, for the table does not name them.
+    // Images are found by their times, since the table does not name them.
     [[nodiscard]] bool is_track() const { return !place(NavigationField::Image); }
 };
 
@@ -68,7 +67,7 @@ struct NavigationColumns {
 inline constexpr std::string_view kHabCamColumns =
     "imagename,lat,lon,head,pitch,roll,alt1,alt2,depth,s,t,o2,cdom,chlorophyll,backscatter,therm";
 
-// formats.json: of each format, which names its columns have.
+// formats.json: the column names of each format.
 struct NavigationFormats {
     std::string_view name;
     std::string_view json;
@@ -76,7 +75,7 @@ struct NavigationFormats {
 [[nodiscard]] std::span<const NavigationFormats> navigation_formats();
 
 struct HeaderRequest {
-    std::string file{};  // it and its line stand in messages
+    std::string file{};  // it and its line are for messages
     std::size_t line = 0;
     ColumnNames given{};
     AngleUnit angles_in = AngleUnit::Degrees;
@@ -84,12 +83,12 @@ struct HeaderRequest {
     bool has_places = false;  // where the vehicle was is asked for
 };
 
-// Whether the columns are of a format, with those that are given.
+// Whether the columns are of a format, including the given ones.
 [[nodiscard]] bool is_navigation_header(const HeaderRequest& request,
                                         const std::vector<std::string>& header);
 
-// An InputError, which begins with file and line, when the columns are of no format, one that is
-// given is not there, or one says a unit in its name that is not the one it would be taken for.
+// An InputError, which begins with file and line, if the columns are of no format, a given one is
+// missing, or one states a unit in its name that is not the one it would be read in.
 [[nodiscard]] NavigationColumns navigation_columns(const HeaderRequest& request,
                                                    const std::vector<std::string>& header);
 

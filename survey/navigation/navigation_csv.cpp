@@ -328,8 +328,8 @@ std::string cut_warning(const std::string& name, const Layout& layout, const Tex
     for (const NavigationField field : {Time, Altitude, Pitch, Roll, East, North, Heading, Depth}) {
         if (layout.columns.place(field) != last) continue;
         return fmt::format(
-            "{}:{}: the file ends within this line, without a line end: if it was cut short, {} = "
-            "{} may lack digits",
+            "{}:{}: the file ends within this line, without a line break: if it was truncated, {} "
+            "= {} may lack digits",
             name,
             row.line,
             shown_word(layout.columns.name(field)),

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Poses from a table with a header row, whose columns may stand in any order, others among them
+// Poses from a table with a header row, whose columns may be in any order, among others
 // (navigation_columns.h):
 //
 //   image,altitude_m,pitch_deg,roll_deg
 //   201207.0001.tif,2.05,4.8,-0.3
 //
-// Fields are separated by commas, semicolons, tabs or blanks, whichever makes a header that can be
-// understood of the table's first line, which comments may precede (table_text.h). Or from lines
-// without a header, known by their values:
+// Fields are separated by commas, semicolons, tabs or blanks, whichever makes the table's first
+// line a known header; comments may precede it (table_text.h). Or from lines without a header,
+// recognised by their values:
 //
 //   201207.0001.tif 2.05 4.8 -0.3        HabCam's .eic
 //   sixteen fields                       HabCam's .img
 //   thirteen fields or more between ;    Matisse's .dim2
 //   fifteen words                        ACFR's stereo_pose_est.data (navigation_csv.cpp)
 //
-// Lines that are empty or hold separators alone are passed over. A cell that is no number costs its
-// own line alone, as does a line with too few or too many fields. A table without a column for
-// pitch or roll leaves it as the rig has it.
+// Lines that are empty or have only separators are skipped. A cell that is not a number loses only
+// its own line, as does a line with too few or too many fields. A table without a column for pitch
+// or roll leaves it to the rig.
 #pragma once
 
 #include "survey/navigation/navigation.h"
@@ -30,7 +30,8 @@
 
 namespace aphotic {
 
-// A line of the table. Of a track, poses have no image but a time, or as their fault why none.
+// A line of the table. In a track, poses have a time instead of an image, or a fault that says why
+// not.
 struct NavigationRow {
     ImagePose pose{};
     double time_s = 0.0;  // since 1970 (time_text.h)
@@ -42,11 +43,10 @@ struct NavigationTable {
     NavigationColumns columns{};
     std::vector<NavigationRow> rows{};
     bool are_cameras_own = false;  // angles, in radians: not those of the vehicle
-    std::string cut_warning{};     // of a last line without an end, whose last number counts
+    std::string cut_warning{};     // of a last line without a line break, whose last number matters
 };
 
-// name stands in messages. A header that cannot be understood, or no line at all, is an InputError
-// that names the line.
+// name is for messages. An unknown header, or no line at all, is an InputError that names the line.
 [[nodiscard]] NavigationTable parse_navigation_csv(const std::string& name,
                                                    std::string_view text,
                                                    const Sled& rig_sled,

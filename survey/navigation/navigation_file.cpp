@@ -94,8 +94,8 @@ bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptio
     }
 }
 
-// A pose for each image, by read(pose), from several threads: files are opened, be it over a
-// network. What it finds wrong is the pose's fault.
+// A pose for each image, from read(pose), in several threads, since files are opened, perhaps over
+// a network. Its errors become the pose's fault.
 template <typename Read>
 std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files,
                                 std::size_t jobs,
@@ -122,12 +122,12 @@ std::vector<std::pair<std::string, std::string>> in_our_order(const ColumnNames&
     return ordered;
 }
 
-// What is said of times in vain would be thought to count.
+// Times given in vain would be thought to count.
 void require_no_times(const NavigationOptions& options) {
     if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
     throw InputError(
         "{}: {} found, but its poses are of images and not of times; allowed with poses over time, "
-        "for which --columns time=COLUMN asks",
+        "which --columns time=COLUMN selects",
         options.source,
         options.time_mask.empty() ? "--clock-offset-s" : "--image-time");
 }
@@ -157,7 +157,7 @@ Navigation navigation_by_time(const NavigationTable& table,
                               const NavigationOptions& options,
                               const std::vector<ImageFile>& files,
                               const Mounting& mounting,
-                              ToldAngles told,
+                              GivenAngles given,
                               NavigationNotes notes) {
     if (!options.time_mask.empty())
         naming("--image-time", [&] { require_time_mask(options.time_mask); });
@@ -174,9 +174,9 @@ Navigation navigation_by_time(const NavigationTable& table,
                      first.line,
                      "the first of {} lines, none of which can be used: {}",
                      table.rows.size(),
-                     fault.empty() ? "altitude_m: found one that --altitude or the camera's place "
-                                     "leaves out"
-                                   : fault);
+                     fault.empty()
+                         ? "altitude_m: found one that --altitude or the camera's position excludes"
+                         : fault);
     }
     notes.times = TimesOfImages{.mask = options.time_mask,
                                 .clock_offset_s = options.clock_offset_s,
@@ -191,12 +191,12 @@ Navigation navigation_by_time(const NavigationTable& table,
         pose.place = track.place_at(time.time_s + options.clock_offset_s);
     };
     Navigation navigation(
-        options.source, poses_of(files, options.jobs, read), told, ImagesKnownBy::Path);
+        options.source, poses_of(files, options.jobs, read), given, ImagesKnownBy::Path);
     navigation.note(std::move(notes));
     if (without_zone > 0) {
         navigation.warn(fmt::format(
-            "{}: the times of {} are taken for UTC: their EXIF has an OffsetTime, which is of the "
-            "file's last change, and no OffsetTimeOriginal; --clock-offset-s shifts them",
+            "{}: the times of {} are taken as UTC: their EXIF has an OffsetTime, which belongs to "
+            "the file's last change, and no OffsetTimeOriginal; --clock-offset-s shifts them",
             options.source,
             counted(without_zone, "image")));
     }
@@ -215,19 +215,19 @@ Navigation navigation_of_table(const NavigationTable& table,
         if (columns.places.at(field))
             notes.columns.emplace_back(kNavigationFields.at(field), columns.names.at(field));
     }
-    const ToldAngles told{.pitch = columns.place(NavigationField::Pitch).has_value(),
-                          .roll = columns.place(NavigationField::Roll).has_value()};
+    const GivenAngles given{.pitch = columns.place(NavigationField::Pitch).has_value(),
+                            .roll = columns.place(NavigationField::Roll).has_value()};
     if (columns.is_track())
-        return navigation_by_time(table, options, files, mounting, told, std::move(notes));
+        return navigation_by_time(table, options, files, mounting, given, std::move(notes));
     require_no_times(options);
     std::vector<ImagePose> poses;
     for (const NavigationRow& row : table.rows) poses.push_back(row.pose);
-    Navigation navigation(options.source, poses, told);
+    Navigation navigation(options.source, poses, given);
     navigation.note(std::move(notes));
     return navigation;
 }
 
-// Poses that are the camera's own cannot be turned by its place on the vehicle.
+// The camera's own poses cannot be converted by its mounting on the vehicle.
 void require_no_place(const NavigationOptions& options, const Mounting& mounting) {
     if (!is_mounted_apart(mounting)) return;
     throw InputError(
@@ -236,18 +236,18 @@ void require_no_place(const NavigationOptions& options, const Mounting& mounting
         options.source);
 }
 
-// Of angles that the navigation does not tell, the rig's count; they are the camera's.
+// Angles that the navigation does not have are the rig's, which are the camera's.
 void require_angles(const Navigation& navigation,
                     const NavigationOptions& options,
                     const Mounting& mounting,
                     bool has_rig) {
-    const ToldAngles told = navigation.told();
-    if (told.pitch && told.roll) return;
-    const std::string_view lacking = told.pitch ? "roll" : told.roll ? "pitch" : "pitch and roll";
+    const GivenAngles given = navigation.given();
+    if (given.pitch && given.roll) return;
+    const std::string_view lacking = given.pitch ? "roll" : given.roll ? "pitch" : "pitch and roll";
     if (is_mounted_apart(mounting)) {
         throw InputError(
-            "{}: has no {}; needed, for the rig's position_m and orientation_deg place the camera "
-            "on the vehicle",
+            "{}: has no {}; needed, since the rig's position_m and orientation_deg place the "
+            "camera on the vehicle",
             options.source,
             lacking);
     }
@@ -259,7 +259,7 @@ void require_angles(const Navigation& navigation,
     }
 }
 
-// An iFDO says which fields it has, in which unit, and that they are the camera's.
+// An iFDO states its fields and their units, and that they are the camera's.
 void require_ifdo_alone(const NavigationOptions& options) {
     require_no_times(options);
     const auto refuse = [&](std::string_view option) {
@@ -284,15 +284,15 @@ Navigation navigation_of_ifdo(std::string_view text,
     if (rig != nullptr) navigation.take_angles_of_rig();
     NavigationNotes notes{.format = "iFDO", .mounting = camera};
     notes.columns.emplace_back("altitude_m", kIfdoHeight);
-    if (navigation.told().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
-    if (navigation.told().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
+    if (navigation.given().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
+    if (navigation.given().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
     navigation.note(std::move(notes));
     // JSON has a bracket at its end; YAML may be cut anywhere.
     if (!text.ends_with('\n') && !text.ends_with('}')) {
-        navigation.warn(fmt::format(
-            "{}: the file ends without a line end: if it was cut short, its last value may lack "
-            "digits",
-            options.source));
+        navigation.warn(
+            fmt::format("{}: the file ends without a line break: if it was truncated, its last "
+                        "value may lack digits",
+                        options.source));
     }
     return navigation;
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Navigation from wherever a survey keeps it, known by its content:
+// Navigation in any of a survey's formats, recognised by its content:
 //
 //   a table          of poses by image, or of poses over time (navigation_csv.h, track.h)
 //   an iFDO          of the camera's own poses (navigation_ifdo.h)
 //   the images' tags HabCam's, with "tags" for a file's name
 //
-// What poses over time are of: an image's time (image_time.h) plus clock_offset_s. Lines of the
-// track without a time, or with a pose that no sled can have or from outside the altitudes, are
-// left out: an altimeter that loses the floor makes a gap, and no altitude between 2 m and 0.
+// The times of images (image_time.h) are shifted by clock_offset_s and looked up in poses over
+// time. Lines of the track without a time, or with a pose that is impossible for a sled or outside
+// the altitudes, are omitted: an altimeter that loses the floor makes a gap, and no altitude
+// between 2 m and 0.
 //
-// Else poses are those of the vehicle; from them follow the camera's (vehicle_pose.h).
+// Otherwise poses are the vehicle's and are converted to the camera's (vehicle_pose.h).
 #pragma once
 
 #include "survey/images/image_files.h"
@@ -39,11 +40,11 @@ namespace aphotic {
 //
 // Source: howland54/habcam-dsvimc.
 
-// alt0, pitch and roll, or what `given` names instead of them. An InputError when it names anything
+// alt0, pitch and roll, or the keys that `given` names instead. An InputError if it names anything
 // but these three.
 [[nodiscard]] ColumnNames tag_names(const ColumnNames& given);
 
-// A fault of the pose, and no error, where the description has none of them.
+// A fault of the pose, not an error, if the description has none of them.
 void read_tags(ImagePose& pose,
                std::string_view description,
                const ColumnNames& names,
@@ -60,20 +61,20 @@ struct NavigationOptions {
     std::string time_mask{};  // of the images' names
     double clock_offset_s = 0.0;
     double longest_gap_s = kLongestGap_s;
-    std::optional<AltitudeIs> altitude_is{};    // none: as the rig has it
-    std::optional<double> altitude_offset_m{};  // none: as the rig has it
+    std::optional<AltitudeIs> altitude_is{};    // empty: as in the rig
+    std::optional<double> altitude_offset_m{};  // empty: as in the rig
     double least_altitude_m = 0.0;              // of the camera
     double most_altitude_m = std::numeric_limits<double>::infinity();
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());  // files read at a time
 };
 
-// What else is known of the sled: a rig, or null. An InputError when the source as a whole cannot
-// be understood, or does not tell the angles that the camera's pose needs.
+// What else is known of the sled: a rig, or null. An InputError if the source as a whole cannot be
+// understood, or lacks the angles that the camera's pose needs.
 [[nodiscard]] Navigation read_navigation(const NavigationOptions& options,
                                          const std::vector<ImageFile>& files,
                                          const Rig* rig);
 
-// The same of a text, whose name options.source is.
+// The same from a text, named by options.source.
 [[nodiscard]] Navigation parse_navigation(std::string_view text,
                                           const NavigationOptions& options,
                                           const std::vector<ImageFile>& files,

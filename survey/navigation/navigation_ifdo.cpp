@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kIfdoOverSea = "image-altitude-meters";
 
-bool is_told(const Ifdo& ifdo, const std::string& key) {
+bool has_value_of(const Ifdo& ifdo, const std::string& key) {
     if (!ifdo.field(IfdoJson::object(), key).is_null()) return true;
     return std::ranges::any_of(ifdo.items(), [&](const IfdoJson& item) {
         const IfdoJson* image = still_image(item);
@@ -28,7 +28,7 @@ std::string without_height(const Ifdo& ifdo, const IfdoJson& image) {
         kIfdoHeight,
         ifdo.field(image, kIfdoOverSea).is_null()
             ? ""
-            : fmt::format("; {} is over sea level, not over the floor", kIfdoOverSea));
+            : fmt::format("; {} is above sea level, not above the floor", kIfdoOverSea));
 }
 
 // NaN and a fault unless it is a number.
@@ -46,7 +46,7 @@ double ifdo_number(const Ifdo& ifdo, const IfdoJson& image, const char* key, Ima
 ImagePose ifdo_pose(const Ifdo& ifdo,
                     const std::string& name,
                     const IfdoJson& item,
-                    const ToldAngles& told,
+                    const GivenAngles& given,
                     const Sled& rig_sled) {
     ImagePose pose{.image = name, .sled = rig_sled};
     const IfdoJson* image = still_image(item);
@@ -62,9 +62,9 @@ ImagePose ifdo_pose(const Ifdo& ifdo,
     }
     const double height_m = ifdo_number(ifdo, *image, kIfdoHeight, pose);
     Sled& sled = pose.sled;
-    if (told.pitch)
+    if (given.pitch)
         sled.pitch_rad = ifdo_number(ifdo, *image, kIfdoPitch, pose) * kRadiansPerDegree;
-    if (told.roll) sled.roll_rad = ifdo_number(ifdo, *image, kIfdoRoll, pose) * kRadiansPerDegree;
+    if (given.roll) sled.roll_rad = ifdo_number(ifdo, *image, kIfdoRoll, pose) * kRadiansPerDegree;
     sled.altitude_m = height_m;
     if (pose.fault.empty()) pose.fault = fault_of(sled);
     sled.altitude_m /= std::cos(sled.pitch_rad) * std::cos(sled.roll_rad);
@@ -78,19 +78,20 @@ Navigation parse_navigation_ifdo(const std::string& name,
                                  const Sled& rig_sled) {
     const Ifdo ifdo = parse_ifdo(name, text);
     if (ifdo.items().empty()) throw InputError("{}: found no image in image-set-items", name);
-    if (!is_told(ifdo, kIfdoHeight)) {
+    if (!has_value_of(ifdo, kIfdoHeight)) {
         throw InputError(
-            "{}: {}, in the header or of any image; allowed: the camera's height over "
-            "the sea floor in metres",
+            "{}: {}, in the header or of any image; allowed: the camera's height above the sea "
+            "floor in metres",
             name,
             without_height(ifdo, *ifdo.items().begin()));
     }
-    const ToldAngles told{.pitch = is_told(ifdo, kIfdoPitch), .roll = is_told(ifdo, kIfdoRoll)};
+    const GivenAngles given{.pitch = has_value_of(ifdo, kIfdoPitch),
+                            .roll = has_value_of(ifdo, kIfdoRoll)};
     std::vector<ImagePose> poses;
     for (const auto& [image, item] : ifdo.items().items()) {
-        poses.push_back(ifdo_pose(ifdo, image, item, told, rig_sled));
+        poses.push_back(ifdo_pose(ifdo, image, item, given, rig_sled));
     }
-    return {name, poses, told};
+    return {name, poses, given};
 }
 
 }  // namespace aphotic

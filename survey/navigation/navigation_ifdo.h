@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Navigation from an image set's iFDO (ifdo.h), of each image or as a default of all:
+// Navigation from an image set's iFDO (ifdo.h), for each image or as a default for all:
 //
 //   image-meters-above-ground     h, the camera's height over the sea floor, plumb
 //   image-camera-pitch-degrees    p, positive bow up
 //   image-camera-roll-degrees     r, positive starboard down
 //
-// which are the camera's own: nothing is to be added for its place on a vehicle. With yaw, pitch
-// and roll turned in this order the axis dips by cos p cos r, and the altitude of a pose, which is
+// which are the camera's own: its mounting on a vehicle is already included. With yaw, pitch and
+// roll applied in this order the axis dips by cos p cos r, and the altitude of a pose, which is
 // along the axis, is h / (cos p cos r). Angles that no image has are the rig's.
 //
-// image-altitude-meters is over sea level, negative in the sea, and never taken.
+// image-altitude-meters is above sea level, negative in the sea, and never used.
 #pragma once
 
 #include "survey/navigation/ifdo.h"
@@ -25,7 +25,7 @@ inline constexpr const char* kIfdoHeight = "image-meters-above-ground";
 inline constexpr const char* kIfdoPitch = "image-camera-pitch-degrees";
 inline constexpr const char* kIfdoRoll = "image-camera-roll-degrees";
 
-// name stands in messages. An InputError when it is no iFDO, or tells no height of any image.
+// name is for messages. An InputError if it is not an iFDO, or has no height for any image.
 [[nodiscard]] Navigation parse_navigation_ifdo(const std::string& name,
                                                std::string_view text,
                                                const Sled& rig_sled);

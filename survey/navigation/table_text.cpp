@@ -70,7 +70,7 @@ void TableText::pass_block_comment() {
     const std::size_t start = text_.find("/*", at_) + kEnd.size();
     const std::size_t end = text_.find(kEnd, start);
     if (end == std::string_view::npos)
-        fail_at_line(name_, line_, "found a comment that begins with /* and never ends in */");
+        fail_at_line(name_, line_, "found a comment that begins with /* and has no */");
     pass_to(end + kEnd.size());
 }
 
@@ -131,7 +131,7 @@ std::string TableText::take_field(char separator) {
     if (at_ - start > kMostFieldBytes) {
         fail_at_line(name_,
                      line_,
-                     "found a field of {} letters; allowed: up to {}",
+                     "found a field of {} characters; allowed: up to {}",
                      at_ - start,
                      kMostFieldBytes);
     }

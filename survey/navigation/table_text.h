@@ -3,13 +3,13 @@
 // A table as text, line by line and field by field, as loggers, databases and spreadsheets write
 // it: RFC 4180 with any separator, and comments.
 //
-// Lines end in LF, CR LF or CR. A field in double quotes may hold separators, line ends, and a
-// quote, which is doubled; where the quotes do not close before a separator or a line end, they are
-// letters like others. Blanks around a field do not count. Separated by blanks, a line has as many
-// fields as it has words.
+// Lines end in LF, CR LF or CR. A field in double quotes may contain separators, line ends, and a
+// quote, which is doubled; quotes that do not close before a separator or a line end are ordinary
+// characters. Blanks around a field are ignored. Separated by blanks, a line has as many fields as
+// words.
 //
-// A line that begins with #, % or // is a comment, and so is all from a line that begins with /* to
-// the next */. So is one that begins with ;, unless semicolons separate the fields.
+// A line that begins with #, % or // is a comment, and so is everything from a line that begins
+// with /* to the next */. So is one that begins with ;, unless semicolons separate the fields.
 #pragma once
 
 #include <cstddef>
@@ -31,19 +31,19 @@ struct TextRow {
 
 class TableText {
   public:
-    // name stands in messages. The text must outlive this.
+    // name is for messages. The text must outlive this.
     TableText(std::string name, std::string_view text);
 
-    // Goes on to a line that is neither empty nor a comment; false: there is none. A separator of
-    // '\0' is not known yet: then a line that begins with ; is none of both.
+    // Advances to a line that is neither empty nor a comment; false if there is none. With a
+    // separator of '\0', which means unknown yet, a line that begins with ; is neither.
     bool find_row(char separator);
 
-    // The row that begins here. take_row() goes past it. An InputError when it has more than
+    // The row that begins here. take_row() moves past it. An InputError if it has more than
     // kMostTableFields, or one of more than kMostFieldBytes.
     [[nodiscard]] TextRow row(char separator) const;
     TextRow take_row(char separator);
 
-    // The last comment of one line that find_row() passed, without its mark; numpy.savetxt puts the
+    // The last one-line comment that find_row() skipped, without its mark; numpy.savetxt puts the
     // header row there.
     [[nodiscard]] std::string_view last_comment() const { return last_comment_; }
 

@@ -20,7 +20,7 @@ struct DateAndTime {
     double second = 0.0;
 };
 
-// UTC. None where the calendar or the clock has no such time.
+// UTC. Empty if the calendar or the clock has no such time.
 [[nodiscard]] std::optional<double> unix_time_s(const DateAndTime& time);
 
 // These seconds themselves, below 1e11; or

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Poses over time, between which those of images are interpolated linearly:
+// Poses over time, between which images' poses are interpolated linearly:
 //
 //   pose(t) = pose_i + (pose_i+1 - pose_i) (t - t_i) / (t_i+1 - t_i),     t_i <= t <= t_i+1
 //
@@ -29,11 +29,11 @@ struct TrackPoint {
 
 class Track {
   public:
-    // In any order; of several at one time the first counts.
+    // In any order; of several at one time the first is used.
     Track(std::vector<TrackPoint> points, double longest_gap_s);
 
-    // An InputError when the time is before the first point, after the last, or between two that
-    // are more than longest_gap_s apart.
+    // An InputError if the time is before the first point, after the last, or between two that are
+    // more than longest_gap_s apart.
     [[nodiscard]] Sled at(double time_s) const;
     [[nodiscard]] Place place_at(double time_s) const;
 

@@ -57,8 +57,8 @@ Sled camera_pose(const Sled& vehicle, const Mounting& mounting) {
     const double height_m = vehicle_height_m - down.dot(mounting.position_m);
     if (height_m <= 0.0) {
         throw InputError(
-            "the camera is {:.3g} m under the floor: the vehicle's origin is {:.3g} m over it, and "
-            "the camera {:.3g} m lower",
+            "the camera is {:.3g} m below the floor: the vehicle's origin is {:.3g} m above it, "
+            "and the camera {:.3g} m lower",
             -height_m,
             vehicle_height_m,
             vehicle_height_m - height_m);

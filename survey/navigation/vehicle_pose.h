@@ -13,12 +13,12 @@
 //            roll                      = atan2(c_y, c_z)
 //
 // p, q: the vehicle's pitch, positive bow up, and roll, positive starboard down [rad]. The frames
-// of vehicle and camera are alike where R = 1: x forward, the top row; y starboard; z down, the
-// axis. Turns are right-handed, about z first, then about the y and the x that have turned along.
+// of vehicle and camera coincide for R = 1: x forward, the top row; y starboard; z down, the axis.
+// Rotations are right-handed, first about z, then about the rotated y and x.
 //
-// Where the camera stands in the vehicle's origin, unturned, its pose is the vehicle's to the bit
-// but for the altitude, and with `axis` and no offset the altitude's, too. Level, at 2 m, a camera
-// 0.5 m below the origin and pitched up by 60 degrees is at 1.5 m / cos(60 deg) = 3 m.
+// If the camera is at the vehicle's origin, not rotated, its pose is exactly the vehicle's except
+// for the altitude, and with `axis` and no offset the altitude's, too. Level, at 2 m, a camera 0.5
+// m below the origin and pitched up by 60 degrees is at 1.5 m / cos(60 deg) = 3 m.
 //
 // In the world, x north, y east, z down, camera and vehicle stand by their headings h, clockwise
 // from north, and their place:
@@ -54,8 +54,8 @@ struct Place {
 // Whether the camera's place or turn is another than the vehicle's.
 [[nodiscard]] bool is_mounted_apart(const Mounting& mounting);
 
-// An InputError with its numbers when the camera's axis does not come down on the floor, or the
-// camera would be under it.
+// An InputError with its numbers if the camera's axis does not meet the floor, or the camera would
+// be below it.
 [[nodiscard]] Sled camera_pose(const Sled& vehicle, const Mounting& mounting);
 
 // Of the camera, from that of the vehicle in this pose.

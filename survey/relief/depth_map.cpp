@@ -70,9 +70,8 @@ DepthMap read_colmap(const fs::path& file) {
     const auto start = is_head ? static_cast<std::size_t>(head.tellg()) : std::size_t{0};
     const std::size_t pixels = is_head ? size_of(map.width_px) * size_of(map.height_px) : 0;
     if (!is_head || text.size() - start != pixels * sizeof(float))
-        throw InputError(
-            "{}: found no depth map of COLMAP's; allowed: width&height&1& and as many floats",
-            file.string());
+        throw InputError("{}: not a COLMAP depth map; allowed: width&height&1& and as many floats",
+                         file.string());
     map.depth_m.resize(pixels);
     std::memcpy(map.depth_m.data(), text.data() + start, pixels * sizeof(float));
     return map;
@@ -166,13 +165,13 @@ fs::path depth_file(const fs::path& place, const fs::path& image) {
     if (found.size() == 1) return found.front();
     if (found.empty())
         throw InputError(
-            "found no depth map of it in {}; allowed: {}.exr, .npy, .png, "
-            "depth_{}.png, {}.geometric.bin",
+            "found no depth map for it in {}; allowed: {}.exr, .npy, .png, depth_{}.png, "
+            "{}.geometric.bin",
             place.string(),
             stem,
             stem,
             name);
-    throw InputError("found {} depth maps of it, {} and {}; allowed: one",
+    throw InputError("found {} depth maps for it, {} and {}; allowed: one",
                      found.size(),
                      found[0].string(),
                      found[1].string());

@@ -6,13 +6,13 @@
 //   x_camera = R(q) X + t,     t = (0, 0, altitude)
 //
 // x_camera: X right, Y down, Z along the axis. X: the world of an image, x to starboard and y
-// forward along the level floor, z up, the origin where the camera's axis meets the floor [m]. So a
-// scene that places its floor there, and is the same in all images, is one world that all of them
-// see; what is drawn anew for each image is a world of its own. Straight down q = (0, 1, 0, 0), a
-// half turn about x.
+// forward along the level floor, z up, the origin where the camera's axis meets the floor [m]. A
+// scene that places its floor there, and is the same in all images, is thus one world that all of
+// them see; anything drawn anew for each image is a world of its own. Straight down q = (0, 1, 0,
+// 0), a half turn about x.
 //
-// The lens is COLMAP's of the same formula (rig/camera/lens_model.h). COLMAP has no port: behind
-// one the camera is the lens in air, as a comment says.
+// The lens is COLMAP's with the same formula (rig/camera/lens_model.h). COLMAP has no port: behind
+// one the camera is the lens in air, as a comment states.
 #pragma once
 
 #include "survey/simulate/flight.h"
@@ -23,7 +23,7 @@
 
 namespace aphotic {
 
-// An InputError of a lens that COLMAP has no model for, or of a name with a blank, which its text
+// An InputError for a lens that COLMAP has no model for, or for a name with a blank, which its text
 // cannot hold.
 void require_colmap(const Camera& camera, const std::vector<Leg>& legs);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the sled of a simulated survey is at each image, and what its instruments tell of that.
+// The sled's pose at each image of a simulated survey, and its instruments' measurements of it.
 //
-// Image i depends on the seed and on i alone, so a short survey is the beginning of a long one.
-// Altitudes go round the golden section, which fills the range evenly however many images there
-// are; pitch and roll are uniform. All three are rounded as the navigation file writes them: what
-// it says is what was flown.
+// Image i depends only on the seed and on i, so a short survey is the beginning of a long one.
+// Altitudes follow the golden section, which fills the range evenly however many images there are;
+// pitch and roll are uniform. All three are rounded as in the navigation file, which thus states
+// exactly what was flown.
 #pragma once
 
 #include "light/path_range.h"
@@ -19,7 +19,7 @@
 
 namespace aphotic {
 
-// Least and most. By default HabCam's, whose tow holds its bow up by some 2 degrees.
+// Least and greatest. By default HabCam's, whose tow holds its bow up by about 2 degrees.
 struct FlightRanges {
     std::array<double, 2> altitude_m{1.3, 3.2};
     std::array<double, 2> pitch_deg{-3.0, 7.0};
@@ -34,18 +34,18 @@ struct Leg {
 
 [[nodiscard]] std::vector<Leg> flight(const FlightRanges& ranges, std::uint64_t seed, int images);
 
-// Of what lies on the floor in an image: 31 bits, as POV-Ray takes.
+// Seed of the floor's contents in an image: 31 bits, POV-Ray's limit.
 [[nodiscard]] std::uint32_t floor_seed(std::uint64_t seed, int image);
 
-// The poses of a navigation, in its order. An InputError when it has none, or one that cannot be
+// The poses of a navigation, in its order. An InputError if it has none, or one that cannot be
 // flown.
 [[nodiscard]] std::vector<Leg> flight_of(const Navigation& navigation);
 
-// Poses between which all of these are (light/path_range.h).
+// Poses that bracket all of these (light/path_range.h).
 [[nodiscard]] std::vector<Sled> corners_of(const FlightRanges& ranges);
 
-// Each number of an image is off by an error of its own, normal with these standard deviations, and
-// by what is the same in all.
+// Each number of an image has its own error, normal with these standard deviations, plus a common
+// one.
 struct InstrumentErrors {
     double altitude_m = 0.02;
     double attitude_deg = 0.5;
@@ -54,7 +54,7 @@ struct InstrumentErrors {
     double roll_bias_deg = 0.0;
 };
 
-// The same flight as instruments tell it, rounded to 1 mm and 0.01 degrees.
+// The same flight as instruments measure it, rounded to 1 mm and 0.01 degrees.
 [[nodiscard]] std::vector<Leg> as_measured(std::vector<Leg> legs,
                                            const InstrumentErrors& errors,
                                            std::uint64_t seed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What each pixel of a simulated survey shows, beside the image that it is in:
+// What each pixel of a simulated survey shows, in addition to its image:
 //
 //   depth/000001.exr         float Z: along the camera's axis, from the pupil [m]
 //   normals/000001.exr       float N.X, N.Y, N.Z: unit, towards the camera, X right, Y down, Z
@@ -13,7 +13,7 @@
 // P Phi  a lamp's flux     rho  the thing's diffuse reflectance     Q_c  the camera's response
 // T      the floor's texture, where it has one (simulated_survey.h)
 //
-// NaN where nothing is in view. Each is that of the ray through the pixel's centre.
+// NaN where nothing is in view. Each is for the ray through the pixel's centre.
 #pragma once
 
 #include "survey/simulate/simulated_survey.h"
@@ -32,10 +32,10 @@ struct SeenPoint {
     std::size_t surface = 0;  // the floor, then the rig's objects in their order
 };
 
-// Of one pose, from several threads: what the point (column, row) of the image shows.
+// For one pose, from several threads: what the point (column, row) of the image shows.
 using Sight = std::function<std::optional<SeenPoint>(double column, double row)>;
 
-// What is asked for by survey.truth and not there yet, for rigs with a floor and objects.
+// Whatever survey.truth requests and does not exist yet, for rigs with a floor and objects.
 void write_seen(const SimulatedSurvey& survey, const std::function<Sight(const Sled&)>& sight_at);
 
 }  // namespace aphotic

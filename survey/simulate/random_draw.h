@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random numbers of simulated surveys: the same whatever the standard library, whose own
-// distributions differ from one to the next.
+// Random numbers of simulated surveys: independent of the standard library, whose distributions
+// vary.
 //
 //   normal     mean 0, variance 1; by Box and Muller
 //   poisson    mean and variance mu: under kFewEvents by Knuth's product of uniforms, else by the
@@ -18,11 +18,11 @@ namespace aphotic {
 
 using RandomSource = std::mt19937_64;
 
-// Of one image of a survey; 0 is of the survey as a whole. Nothing else counts, so that images can
-// be made in any order.
+// For one image of a survey; 0 is the survey as a whole. It depends on nothing else, so that images
+// can be made in any order.
 [[nodiscard]] RandomSource random_of(std::uint64_t seed, int image);
 
-// From 0 up, under 1.
+// From 0 up to below 1.
 [[nodiscard]] double uniform(RandomSource& random);
 [[nodiscard]] double normal(RandomSource& random);
 

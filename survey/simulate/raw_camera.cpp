@@ -20,8 +20,8 @@ RawCamera raw_camera_of(const Readout& readout, bool is_mono) {
     if ((camera.mosaic == Mosaic::Mono) != is_mono) {
         throw InputError("bayer: found {}; allowed: {}",
                          mosaic_name(camera.mosaic),
-                         is_mono ? "mono, as the rig's response is of one channel"
-                                 : "a pattern of colours, as the rig's response is of three");
+                         is_mono ? "mono, since the rig's response has one channel"
+                                 : "a colour pattern, since the rig's response has three channels");
     }
     camera.black_dn = readout.black_level_dn.value_or(camera.black_dn);
     camera.white_dn = readout.white_level_dn.value_or(camera.white_dn);

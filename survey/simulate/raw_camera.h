@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From the camera's signal to what its file holds, by the linear model of EMVA 1288 (release 4.0),
+// From the camera's signal to its file's contents, by the linear model of EMVA 1288 (release 4.0),
 // whose dark signal is the black level:
 //
 //   mu  = g S_c(pixel)                         electrons; c is the channel of the pixel's own
@@ -9,9 +9,9 @@
 //
 // S_c  the signal, linear        g  electrons of a signal of 1        K  gain [DN per electron]
 //
-// Without noise e = min(mu, saturation_e). So of an even light the mean is black + K mu, and the
-// variance K^2 (read_noise_e^2 + mu) + 1/12, that of rounding; without light it is the read noise's
-// and rounding's. Dark current and differences from pixel to pixel (DSNU, PRNU) are left out.
+// Without noise e = min(mu, saturation_e). For even light the mean is thus black + K mu, and the
+// variance K^2 (read_noise_e^2 + mu) + 1/12, that of rounding; without light it is that of read
+// noise and rounding. Dark current and differences from pixel to pixel (DSNU, PRNU) are omitted.
 #pragma once
 
 #include "image/camera_image.h"
@@ -31,24 +31,24 @@ struct RawCamera {
     Mosaic mosaic = Mosaic::Rggb;
     double black_dn = 64.0;
     double white_dn = 4095.0;  // of 12 bits
-    // As of an interline CCD with pixels of 6.45 um, a common kind in such cameras; its well fills
+    // Like an interline CCD with pixels of 6.45 um, a common kind in such cameras; its well fills
     // the numbers.
     double gain_dn_per_e = 4031.0 / 15000.0;
     double read_noise_e = 8.0;
     double saturation_e = 15000.0;
     double electrons_per_signal = 1.0;  // g
-    ShotExposure shot{};                // what its files tell in their Exif
+    ShotExposure shot{};                // for its files' Exif
 };
 
-// What a camera does not tell is as above; of gain and saturation what is not told follows from
-// the other: white is where the well is full. An InputError where white is not over black or not
-// a number of 16 bits, and of a mosaic of a mono camera, or mono of one of colours.
+// Values that a camera lacks are as above; a missing gain or saturation follows from the other:
+// white is where the well is full. An InputError if white is not above black or not a 16-bit
+// number, for a mosaic with a mono camera, or for mono with a colour camera.
 [[nodiscard]] RawCamera raw_camera_of(const Readout& readout, bool is_mono = false);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const RawCamera& camera);
 
-// Row by row; of a mono camera the signal is that of red. noise: the survey's seed and the image's
-// number, on which it depends and on nothing else; none: no noise.
+// Row by row; for a mono camera the signal is that of red. noise: the survey's seed and the image's
+// number, on which it depends only; empty: no noise.
 struct NoiseOf {
     std::uint64_t seed = 0;
     int image = 0;

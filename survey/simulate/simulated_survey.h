@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A simulated survey, as a camera would have written it, with the truth beside. In its folder:
+// A simulated survey, as a camera would have written it, with the truth. In its folder:
 //
 //   survey.json               the settings that it is made with, and the camera
 //   navigation.txt            the true poses (flight.h)
@@ -9,18 +9,18 @@
 //   texture/000001.exr        what the floor reflects, times the rig's floor: float Y
 //   raw/000001.tif            what the camera's file holds (raw_camera.h), 16 bits
 //
-// and, where they are asked for, depth, normals, reflectance (image_truth.h) and poses
-// (colmap_poses.h). No image depends on these, so they may be asked for later.
+// and, if requested, depth, normals, reflectance (image_truth.h) and poses (colmap_poses.h). No
+// image depends on these, so they may be requested later.
 //
-// A flat floor's truth is made here, of lightmaps:
+// A flat floor's truth is made here, from lightmaps:
 //
 //   S_c(pixel) = map_c T(x, y) + veil_c          (x, y) the pixel's place on the floor
 //
-// with the texture T (floor_texture.h), for the veil never met the floor. Each image sees a piece
-// of floor of its own. Any other truth is made by whoever can (plugin/survey_render.h).
+// with the texture T (floor_texture.h); the veil never met the floor. Each image sees its own piece
+// of floor. Any other truth is made elsewhere (plugin/survey_render.h).
 //
-// An image depends on the settings and on its number alone: not on threads, nor on how many images
-// there are. So a survey that was interrupted goes on, and grows, when it is made again.
+// An image depends only on the settings and its number: not on threads, nor on the number of
+// images. An interrupted survey thus continues, and can be extended, when it is made again.
 #pragma once
 
 #include "image/camera_image.h"
@@ -63,30 +63,30 @@ struct SimulatedSurvey {
 
 inline constexpr const char* kSurveyNotes = "survey.json";
 
-// Of an image; kind: the folder's name, such as "raw".
+// For an image; kind: the folder's name, such as "raw".
 [[nodiscard]] std::filesystem::path file_of(const SimulatedSurvey& survey,
                                             const char* kind,
                                             const Leg& leg);
 [[nodiscard]] std::filesystem::path truth_file(const SimulatedSurvey& survey, const Leg& leg);
 
-// Of files that are to be written yet, uncompressed.
+// Of files still to be written, uncompressed.
 [[nodiscard]] std::uint64_t missing_bytes(const SimulatedSurvey& survey);
 
-// An InputError where the folder holds a survey of other settings. Else these are noted.
+// An InputError if the folder holds a survey with other settings. Otherwise these are recorded.
 void begin_survey(const SimulatedSurvey& survey);
 
-// Electrons of a signal of 1 so that the brightest of the rig's bare floor, seen straight down from
-// the lowest of these poses, fills this share of the well.
+// The electrons for a signal of 1 with which the brightest of the rig's bare floor, seen straight
+// down from the lowest of these poses, fills this share of the well.
 [[nodiscard]] double electrons_for_share(Rig rig,
                                          const std::vector<Sled>& corners,
                                          double saturation_e,
                                          double share);
 
-// What is not there yet of the images' truth, and texture. An InputError of a rig whose view holds
-// more than a flat floor.
+// Missing parts of the images' truth, and texture. An InputError for a rig whose view contains more
+// than a flat floor.
 void make_truth_by_lightmaps(const SimulatedSurvey& survey);
 
-// What is not there yet of the raw images, from their truth; the navigation, and all of the notes.
+// Missing raw images, from their truth; the navigation, and all of the notes.
 void finish_survey(const SimulatedSurvey& survey);
 
 }  // namespace aphotic

@@ -38,14 +38,13 @@ TEST(ParseJson, ReadsWhatIsThere) {
 
 TEST(ParseJson, NamesWhatIsNone) {
     for (const char* text : {"", "{", "{\"a\" 1}", "[1] 2", "NaN", "1e999", "\"\xff\""})
-        EXPECT_EQ(error_of(text), "notes.json: is not JSON") << text;
+        EXPECT_EQ(error_of(text), "notes.json: not valid JSON") << text;
 }
 
 TEST(ParseJson, RefusesToNestDeeperThanItsLimit) {
     const auto refusal = [](std::size_t depth) {
-        return fmt::format("notes.json: found values nested in {} levels; allowed: up to {}",
-                           depth,
-                           kMostJsonDepth);
+        return fmt::format(
+            "notes.json: found values nested {} deep; allowed: up to {}", depth, kMostJsonDepth);
     };
     constexpr std::size_t kMost = kMostJsonDepth;
     EXPECT_EQ(error_of(nested(kMost)), "nothing was said");
@@ -89,7 +88,7 @@ TEST(ParseJson, RefusesAKeyThatStandsTwiceInAnObject) {
     };
     EXPECT_EQ(error_of(R"({"a": {"b": 1}, "b": {"b": 2}, "c": [{"b": 1}, {"b": 1}]})"), kAccepted);
     EXPECT_EQ(error_of(R"({"a": {"b": 1, "c": {"b": 1}, "b": 2}})"),
-              "f: 'b' stands twice in an object");
+              "f: duplicate key 'b' in an object");
 }
 
 // Where each key was held against all before it, a million would take an hour.

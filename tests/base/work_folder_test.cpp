@@ -67,11 +67,11 @@ TEST(FolderLock, RefusesASecondWriterAtOnceAndNamesTheFirst) {
     const Holder holder(folder.path(), FolderUse::Write);
     const std::string without_process =
         folder.path().string() +
-        ": another aphotic is at work in this folder; allowed: one at a time";
+        ": this folder is in use by another aphotic; allowed: one at a time";
     const std::string with_process =
         folder.path().string() +
         fmt::format(
-            ": another aphotic is at work in this folder (process {}); allowed: one at a time",
+            ": this folder is in use by another aphotic (process {}); allowed: one at a time",
             holder.pid());
     // File systems of layers tell the kernel's list another device than stat().
     for (const FolderUse use : {FolderUse::Write, FolderUse::Read}) {

@@ -198,7 +198,7 @@ TEST_F(CommandCompare, LeavesOpacityAsideWithAWord) {
     with_opacity.emplace_back(kPixels, 1.0F);
     write("a.exr", with_opacity, {"R", "G", "B", "A"});
     write("b.exr", kReference);
-    done(compare({}), "left aside: A\n");
+    done(compare({}), "not compared: A\n");
     EXPECT_EQ(json_of({}, 0)["left_aside"], nlohmann::json({"A"}));
     // In both it is a channel like any other.
     with_opacity.back().front() = 0.5F;

@@ -279,10 +279,10 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     auto why = skipped(summary);
     EXPECT_EQ(why.size(), 7U) << summary.dump(2);
     for (const char* name : {"raw/rows.tif", "raw/packed.tif"})
-        EXPECT_TRUE(has(why[name], "it is cut short"));
+        EXPECT_TRUE(has(why[name], "it is truncated"));
     EXPECT_TRUE(has(why["raw/cut.tif"], "cannot be read"));
     EXPECT_TRUE(has(why["raw/words.png"], "cannot be read"));
-    EXPECT_EQ(why["raw/small.tif"], "found 2 x 2 pixels; allowed: 48 x 36, as the map has");
+    EXPECT_EQ(why["raw/small.tif"], "found 2 x 2 pixels; allowed: 48 x 36, like the map");
     EXPECT_EQ(why["raw/unknown.tif"], "nav.eic has no line for it");
     EXPECT_EQ(why["raw/low.tif"], "nav.eic:10: altitude_m: found 0; allowed: 0.001 to 10000");
     for (const auto& [image, reason] : why) {
@@ -352,7 +352,7 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     const std::string rig = text_of("rig.toml");
     write_file(path("rig.toml"), rig + "# of the second dive\n");
     EXPECT_TRUE(has(done(correct("--gain-from one", "three")).err,
-                    "looks wrong: gain-from: one: the rig there is another"));
+                    "looks wrong: gain-from: one: made with a different rig"));
     EXPECT_EQ(notes("three")["looks_wrong"][0]["about"], "gain-from");
     EXPECT_EQ(aphotic(correct("--gain-from one --strict", "three")).status, kBadInput);
     write_file(path("rig.toml"), rig);
@@ -370,15 +370,16 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     for (const char* folder : {"no-gain", "no-json"}) fs::create_directories(path(folder));
     write_file(path("no-gain/correction.json"), R"({"gain": [1, 0, 1]})");
     write_file(path("no-json/correction.json"), "no notes");
-    for (const auto& [options, why] : Cases{
-             {"raw",
-              "--gain-from: raw: holds no correction.json; allowed: a folder that correct wrote"},
-             {"no-gain",
-              "--gain-from: no-gain: correction.json: tells of no gain; allowed: as correct wrote "
-              "it"},
-             {"no-json", "--gain-from: no-json: correction.json: is not JSON"},
-             {"one --gain 2", "--gain"},
-             {"one --middle 0.2", "--middle"}})
+    for (const auto& [options, why] :
+         Cases{{"raw",
+                "--gain-from: raw: contains no correction.json; allowed: a folder that `correct` "
+                "wrote"},
+               {"no-gain",
+                "--gain-from: no-gain: correction.json: contains no gain; allowed: as `correct` "
+                "wrote it"},
+               {"no-json", "--gain-from: no-json: correction.json: not valid JSON"},
+               {"one --gain 2", "--gain"},
+               {"one --middle 0.2", "--middle"}})
         refused(correct("--gain-from" + options, "four"), why);
 }
 
@@ -600,7 +601,7 @@ TEST_F(CorrectCommand, TheFirstImageThatCannotBeReadIsNamed) {
         note(name, {2.0, 0.0, 0.0});
     }
     refused(correct("--jobs 8"),
-            "none of the 16 images looked at can be corrected; 00: found 1024 x 1024 pixels");
+            "none of the 16 images examined can be corrected; 00: found 1024 x 1024 pixels");
 }
 
 // What was noted is believed only as far as it makes sense: the rest is done again.
@@ -684,8 +685,8 @@ TEST_F(CorrectCommand, APoseWithAStrobeUnderTheFloorIsSkipped) {
     EXPECT_EQ(summary["gain_from"].size(), 4U);
     const std::map<std::string, std::string> why{
         {"raw/tilted.tif",
-         "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' stands 0.2327 m under the sea "
-         "floor; allowed: at least 0.001 m over it"}};
+         "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' is 0.2327 m below the sea floor; "
+         "allowed: at least 0.001 m above it"}};
     EXPECT_EQ(skipped(summary), why);
 }
 
@@ -704,8 +705,8 @@ TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
     EXPECT_EQ(summary["corrected"], 4);
     auto why = skipped(summary);
     EXPECT_EQ(why.size(), 4U) << summary.dump(2);
-    EXPECT_EQ(why["raw/gone.tif"], "found a link that leads nowhere; allowed: a file");
-    EXPECT_EQ(why["raw/itself.tif"], "found a link that leads nowhere; allowed: a file");
+    EXPECT_EQ(why["raw/gone.tif"], "found a broken link; allowed: a file");
+    EXPECT_EQ(why["raw/itself.tif"], "found a broken link; allowed: a file");
     EXPECT_EQ(why["raw/pipe.tif"], "found a pipe, device or folder; allowed: a file");
     EXPECT_EQ(why["named.tif"], "found a pipe, device or folder; allowed: a file");
 }
@@ -730,7 +731,7 @@ TEST_F(CorrectCommand, AnImageThatVanishesMeanwhileIsOneThatIsSkipped) {
     });
     const Json summary = json_by(correct("--json --gain 1 --jobs 1"), kAnswerIsNo);
     EXPECT_EQ(summary["corrected"], kMany - 1);
-    const std::map<std::string, std::string> why{{last, "there is no such file any more"}};
+    const std::map<std::string, std::string> why{{last, "the file no longer exists"}};
     EXPECT_EQ(skipped(summary), why);
 }
 
@@ -771,23 +772,23 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     const std::vector<std::uint16_t> black(kPixels, static_cast<std::uint16_t>(kBlackLevel));
     write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
     const Arguments by_rig("correct --rig rig.toml --nav nav.eic");
-    for (const auto& [options, why] : Cases{
-             {"rew -o out", "rew: there is no such file or folder"},
-             {"raw raw/a.tif -o out", "would both become out/a"},
-             {"raw -o out --bayer RGB", "--bayer: found 'RGB'"},
-             {"raw -o out --gain 1,2", "--gain: found 2 numbers"},
-             {"raw -o out --compression lzw", "--compression"},
-             {"raw -o out --altitudes-m 4,1", "--altitude: found 4,1"},
-             {"raw/a.tif -o raw", "would be overwritten by the result"},
-             {"mine/a.tif mine/a.mask.png -o mine --format exr --mask",
-              "mine/a.mask.png: would be overwritten by the result"},
-             {"raw -o raw", "found the folder to write to"},
-             {"dark -o out --bayer GRBG --black-level 60",
-              "no gain can be taken from these images"},
-             {"raw -o out",
-              "the only image looked at cannot be corrected; a: found one channel and no --bayer; "
-              "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono"},
-             {"empty -o out", "empty: the folder holds no image"}})
+    for (const auto& [options, why] :
+         Cases{{"rew -o out", "rew: no such file or folder"},
+               {"raw raw/a.tif -o out", "would both become out/a"},
+               {"raw -o out --bayer RGB", "--bayer: found 'RGB'"},
+               {"raw -o out --gain 1,2", "--gain: found 2 numbers"},
+               {"raw -o out --compression lzw", "--compression"},
+               {"raw -o out --altitudes-m 4,1", "--altitude: found 4,1"},
+               {"raw/a.tif -o raw", "would be overwritten by the result"},
+               {"mine/a.tif mine/a.mask.png -o mine --format exr --mask",
+                "mine/a.mask.png: would be overwritten by the result"},
+               {"raw -o raw", "found the output folder"},
+               {"dark -o out --bayer GRBG --black-level 60",
+                "no gain can be derived from these images"},
+               {"raw -o out",
+                "the only image examined cannot be corrected; a: found one channel and no --bayer; "
+                "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono"},
+               {"empty -o out", "empty: the folder contains no images"}})
         refused(by_rig + options, why);
     write_file(path("nav.eic"), "a.tif two 0 0\n");
     refused(by_rig + "raw -o out", "nav.eic:1: altitude_m: found 'two'; allowed: a number");

@@ -70,9 +70,9 @@ TEST_F(CommandData, MakesTablesOfSplines) {
     EXPECT_EQ(run.out,
               "wrote tables/d-clay-01.csv: D_Clay_01, 380 to 730 nm, 3 rows\n"
               "wrote tables/d-mud.csv: D_Mud, 380 to 730 nm, 4 rows\n");
-    EXPECT_EQ(run.err,
-              "aphotic: things.inc:3: D_Mud is a cubic_spline: its knots are taken, and joined by "
-              "straight lines\n");
+    EXPECT_EQ(
+        run.err,
+        "aphotic: things.inc:3: D_Mud is a cubic_spline: its knots are joined by straight lines\n");
     const auto json = json_by(data("tables/d-clay-01.csv --json"));
     EXPECT_EQ(json["role"], "reflectance");
     EXPECT_EQ(json["values"][1], (std::vector<double>{400.0, 0.03}));

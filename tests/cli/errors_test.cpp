@@ -79,7 +79,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
              {correct + "--columns image=", "--columns: found 'image='; allowed: NAME=COLUMN"},
              {correct + "--angles-in grad", "--angles-in"},
              {correct + "--image-time YYMM",
-              "--image-time: found 'YYMM', which has not YYYY in one place; allowed: YYYY, MM, DD"},
+              "--image-time: found 'YYMM', in which YYYY is split; allowed: YYYY, MM, DD"},
              {correct + "--altitude-is up", "--altitude-is"},
              {"baseline homomorphic raw -o out --nav n --altitude-offset-m 1001",
               "--altitude-offset-m: found 1001; allowed: -1000 to 1000"},
@@ -104,21 +104,22 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
 // What a script passes for a variable that it never set: the folder that it runs in is not meant.
 TEST_F(CommandErrors, AnEmptyNameIsNone) {
     for (const char* command : {"render", "generate", "trace", "validate", "study", "lightmap"})
-        refused({command, "rig.toml", "-o", ""}, "--output: found an empty text; allowed: a name");
-    refused({"integrate", ""}, "DIR: found an empty text; allowed: a name");
+        refused({command, "rig.toml", "-o", ""},
+                "--output: found an empty string; allowed: a name");
+    refused({"integrate", ""}, "DIR: found an empty string; allowed: a name");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "the rig alone";
 }
 
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
     const std::string rig = text_of("rig.toml");
     write_file(path("rig.svg"), rig);
-    refused("plan rig.svg --plot rig.svg", "aphotic: --plot: found rig.svg, which RIG names too");
+    refused("plan rig.svg --plot rig.svg", "aphotic: --plot: found rig.svg, which RIG also names");
     EXPECT_EQ(text_of("rig.svg"), rig);
     fs::create_directory(path("raw"));
     write_file(path("raw/a.exr"), "raw");
     write_file(path("nav.csv"), "image,altitude_m\na.exr,2\n");
     refused("observe raw --nav nav.csv --altitude 2 -o raw/a.exr",
-            "aphotic: --output: found raw/a.exr, which IMAGES names too");
+            "aphotic: --output: found raw/a.exr, which IMAGES also names");
     EXPECT_EQ(text_of("raw/a.exr"), "raw");
 }
 

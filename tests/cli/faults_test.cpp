@@ -102,7 +102,7 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                                     "baseline homomorphic raw -o out",
                                     "fit rig.toml --maps raw/a.exr -o out"}) {
             expect_message(
-                aphotic(command), kRunFailed, "out: another aphotic is at work in this folder");
+                aphotic(command), kRunFailed, "out: this folder is in use by another aphotic");
         }
     }
     EXPECT_EQ(contents(path("out")), before);
@@ -200,14 +200,14 @@ TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
     EXPECT_TRUE(has(lines[0], path("tmp/aphotic-").string()));
-    EXPECT_TRUE(has(lines[0], ": No space left on device: 0 KiB are left"));
+    EXPECT_TRUE(has(lines[0], ": No space left on device: 0 KiB left"));
     EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(Faults, AMissingFolderForTemporaryFilesIsSaid) {
     expect_message(render({{"TMPDIR", "/no/such/folder"}}),
                    kRunFailed,
-                   "TMPDIR: found /no/such/folder; allowed: a folder that is there");
+                   "TMPDIR: found /no/such/folder; allowed: an existing folder");
     EXPECT_FALSE(fs::exists(path("out")));
 }
 
@@ -306,8 +306,8 @@ TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
             }
             const CommandResult run = aphotic("integrate out");
             expect_message(run, kRunFailed, frame(1).filename().string());
-            EXPECT_TRUE(
-                has(run.err, is_noted ? spoilt.found : "is not the image that the manifest notes"));
+            EXPECT_TRUE(has(run.err,
+                            is_noted ? spoilt.found : "is not the image recorded in the manifest"));
             EXPECT_EQ(image(), before);
             done(render(), "1 frame rendered, 1 kept");
             EXPECT_EQ(image(), before);
@@ -393,7 +393,7 @@ const Arguments kOneJob("--jobs 1");
 
 TEST_F(BadPovRay, GarbageForAnImage) {
     expect_failure("for a; do case \"$a\" in +O*) echo garbage > \"${a#+O}\" ;; esac; done\n",
-                   "is no readable OpenEXR image",
+                   "not a readable OpenEXR image",
                    kOneJob);
 }
 
@@ -484,8 +484,7 @@ TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
         "exec povray \"$@\"\n");
     expect_message(render_reef(editing),
                    kRunFailed,
-                   "reef.pov: it, or a file that it names, was "
-                   "changed while it was worked on");
+                   "reef.pov: this scene, or a file that it names, changed during the run");
     const Manifest left = read_manifest(path("out"));
     EXPECT_TRUE(left.frames[0].done()) << "rendered before the edit";
     EXPECT_FALSE(left.frames[1].done());
@@ -500,7 +499,7 @@ TEST_F(OwnScene, EditedWhileItIsLookedAtIsNotPlanned) {
     const auto editing = povray_that(
         "case \"$1\" in *strobe_1_*) echo '// edited' >> reef.pov ;; esac\n"
         "exec povray \"$@\"\n");
-    expect_message(render_reef(editing), kRunFailed, "was changed while it was worked on");
+    expect_message(render_reef(editing), kRunFailed, "changed during the run");
     EXPECT_FALSE(fs::exists(path("out")));
 }
 

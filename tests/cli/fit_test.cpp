@@ -149,11 +149,11 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
                                    "What was found",
                                    "Not fitted, as the rig has them: floor.",
                                    "Observed and fitted",
-                                   "what stays in place",
+                                   "fixed pattern",
                                    "id=\"beam-0\"",
                                    "within twice its standard error",
                                    "id=\"brightness\"",
-                                   "The rig that it began with"})
+                                   "The starting rig"})
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
     // What fit.json and the terminal name, the page does, too.
     for (const Json& one : json.at("numbers")) {
@@ -332,7 +332,7 @@ TEST_F(CommandFit, FindsOutRedForBlue) {
     const Arguments options("--black-level 64 --white-level 4095 --free aim --blocks 8 --strict");
     const CommandResult wrong =
         refused(by_images(options + "--bayer BGGR"), "bayer: red over blue varies");
-    EXPECT_TRUE(has(wrong.err, "--bayer RGGB puts them right"));
+    EXPECT_TRUE(has(wrong.err, "--bayer RGGB corrects this"));
     EXPECT_FALSE(fs::exists(path("fitted")));
     done(by_images(options + "--bayer RGGB"));
 }
@@ -340,10 +340,9 @@ TEST_F(CommandFit, FindsOutRedForBlue) {
 TEST_F(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
     write_rigs(FitRigNumbers{}, FitRigNumbers{});
     fly("--images 3");
-    const CommandResult run =
-        refused(by_images({}),
-                "aphotic: none of the 3 images looked at can be read; 000001: found one channel "
-                "and no --bayer; allowed: ");
+    const CommandResult run = refused(by_images({}),
+                                      "aphotic: none of the 3 images examined can be read; 000001: "
+                                      "found one channel and no --bayer; allowed: ");
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     EXPECT_FALSE(fs::exists(path("fitted")));
 }

@@ -156,8 +156,7 @@ TEST_F(Fitted, FramesThatCannotServeAreRefusedByWhatIsLacking) {
     EXPECT_EQ(murky.status, 2);
     EXPECT_TRUE(std::regex_search(
         murky.err,
-        std::regex(
-            R"(murky.toml: the frames can be this rig's image to \S+ only; allowed: 0.001)")))
+        std::regex(R"(murky.toml: the frames give this rig's image to \S+ only; allowed: 0.001)")))
         << murky.err;
     EXPECT_NE(murky.err.find("it lacks"), std::string::npos) << murky.err;
     EXPECT_FALSE(fs::exists(folder_.path() / "out" / "as-murky"));

@@ -50,7 +50,7 @@ class FrameFormatOption : public CommandTest {
 TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
     put_small_scene("habcam.toml", home_);
     refused(run_without_openexr("render rig.toml -o exr"),
-            "built without OpenEXR, in which frames are written; --frame-format png16 does without",
+            "built without OpenEXR, which frames need; --frame-format png16 does without",
             kRunFailed);
     EXPECT_FALSE(fs::exists(path("exr")));
 
@@ -59,7 +59,7 @@ TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
 
     refused(run_without_openexr("render --frame-format png16 -o own" +
                                 Arguments{APHOTIC_SOURCE_DIR "/scenes/user/reef/reef.toml"}),
-            "in which a scene of your own is measured",
+            "which the probe of a scene of your own needs",
             kRunFailed);
 }
 

@@ -44,7 +44,7 @@ const std::vector<Texts> kHostile{
      "-O owned.csv",
      "+Oowned.csv",
      "; touch owned;.csv"},
-    // POV-Ray makes blanks of letters beyond ASCII: these tables must stay two.
+    // POV-Ray makes blanks of non-ASCII letters: these tables must stay two.
     {"K\xC3\xB6ln \xE2\x80\xAE \xF0\x9F\x90\x9A",
      "\xC3\xA4",
      "\xC3\xA4.csv",
@@ -191,7 +191,7 @@ TEST_F(Hostile, FolderThatWouldAddASettingIsRefused) {
                "Aphotic_Seafloor (2, 0, 0, \"sand\")\n");
     for (const std::string name : {"x\nOutput_File_Name=owned", "x\" y"}) {
         refused({"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"},
-                "for POV-Ray cannot read them");
+                "since POV-Ray cannot read them");
     }
 }
 

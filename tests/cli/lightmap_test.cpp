@@ -112,9 +112,8 @@ TEST_F(CommandLightmap, PromisesWhatHolds) {
 TEST_F(CommandLightmap, RefusesTwoPartsOfOneName) {
     write_file(path("rig.toml"), replaced(text_of("rig.toml"), "\"aft\"", "\"fore.collimated\""));
     refused(lightmap("--per-strobe --per-cone"),
-            "aphotic: rig.toml: strobes: found two parts of the light that would be named "
-            "fore.collimated, of a strobe and of a cone, or of two cones; allowed: names that "
-            "differ\n");
+            "aphotic: rig.toml: strobes: found two parts of the light named fore.collimated, of a "
+            "strobe and a cone or of two cones; allowed: names that differ\n");
     done(lightmap("--per-strobe"));
 }
 
@@ -171,7 +170,7 @@ TEST_F(CommandLightmap, RefusesWhatIsByAltitudeBeforeItBegins) {
                {"-o out --altitude 1:2:0.5 --preview map.png", "--preview: found with 3 altitudes"},
                {"-o out --altitude 1:3:1 --export oplab", "found 3 altitudes; allowed: 4 or more"},
                {"-o out --altitude 0.02:0.1:0.04 --pitch 30",
-                "strobe 'aft' stands 0.2327 m under the sea floor"}})
+                "strobe 'aft' is 0.2327 m below the sea floor"}})
         refused("lightmap rig.toml" + options, why);
 }
 

@@ -34,8 +34,7 @@ class CommandModelError : public CommandTest {
 
 TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
     const auto json = json_by("plan rig.toml --json");
-    done("lightmap rig.toml -o map.exr",
-         "what the model of scattering leaves out is estimated at 0.0");
+    done("lightmap rig.toml -o map.exr", "model error estimate, of scattering: 0.0");
     const std::string noted = ExrReader(path("map.exr")).attribute("aphotic:model_error");
     double red = 0.0;
     double green = 0.0;
@@ -53,10 +52,9 @@ TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
                                 "trace rig.toml -o out",
                                 "lightmap rig.toml -o map.exr",
                                 "lightmap rig.toml -o out --altitude 1:2:1"}) {
-        refused(
-            command + "--model-tolerance 1e-9",
-            "in what the model of water that scatters leaves out: light that is turned more than "
-            "once, and blur; allowed: --model-tolerance 1e-09");
+        refused(command + "--model-tolerance 1e-9",
+                "in what the model leaves out of water that scatters: light scattered more than "
+                "once, and blur; allowed: --model-tolerance 1e-09");
     }
 }
 

@@ -203,7 +203,7 @@ TEST_F(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
         EXPECT_TRUE(std::regex_search(
             run->err,
             std::regex(
-                R"(needs up to [0-9.]+ [kMG]B in disk/out, [0-9.]+ kB are free\. Nothing was begun)")))
+                R"(needs up to [0-9.]+ [kMG]B in disk/out, [0-9.]+ kB free\. Nothing was started)")))
             << command << ": " << run->err;
         // The listing of the disk that follows is empty.
         EXPECT_TRUE(run->err.ends_with("compress\n")) << command << ": " << run->err;
@@ -219,7 +219,7 @@ TEST_F(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
                     APHOTIC_COMMAND));
     if (!run) GTEST_SKIP() << kNoDisk;
     EXPECT_EQ(run->status, kRunFailed);
-    EXPECT_TRUE(has(run->err, "Nothing was begun"));
+    EXPECT_TRUE(has(run->err, "Nothing was started"));
 }
 
 TEST_F(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {

@@ -228,7 +228,7 @@ TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     fs::create_directories(path("raw"));
     write_file(path("raw/a.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
     refused(observe({}),
-            "the only image looked at cannot be read; a: found one channel and no --bayer");
+            "the only image examined cannot be read; a: found one channel and no --bayer");
 }
 
 TEST_F(CommandBaseline, TakesANavigation) {

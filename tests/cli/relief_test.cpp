@@ -209,8 +209,8 @@ TEST_F(CommandRelief, MapsOfAnotherConventionOrOfOtherImagesAreWarnedOf) {
             .err;
     };
     EXPECT_FALSE(has(said("right"), "depth"));
-    EXPECT_TRUE(has(said("rays"), "depths of the other convention"));
-    EXPECT_TRUE(has(said("others"), "other images'"));
+    EXPECT_TRUE(has(said("rays"), "the other depth convention"));
+    EXPECT_TRUE(has(said("others"), "belong to other images"));
 }
 
 // What an image without one strobe becomes by the light that was on, on the depth map's floor, is
@@ -431,9 +431,9 @@ TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
     const std::string correct = "correct step.exr --rig rig.toml --format exr -o out ";
     const Cases cases{
         {Arguments(correct + "--depth-map mm"),
-         "found depths of 2300 m in the median of its depth map, and an altitude of 2 m"},
+         "found a median depth of 2300 m in its depth map, and an altitude of 2 m"},
         {Arguments(correct + "--depth-map holes"), "found no depth in any of 3072 pixels"},
-        {Arguments(correct + "--depth-map none"), "found no depth map of it in none"},
+        {Arguments(correct + "--depth-map none"), "found no depth map for it in none"},
         {Arguments(correct + "--depth-map axis --normals floor"), "--normals floor needs --nav"},
         {Arguments(correct), "--rig needs --nav"},
         {Arguments("correct step.exr --map step.exr --depth-map axis --format exr -o out"),

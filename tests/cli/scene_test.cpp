@@ -188,7 +188,7 @@ TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
 TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
     put_scene(kFloor);
     refused({"render", "rig.toml", "--scene", "reef.pov", "-o", "\xC3\xBC", "--fitted", "1"},
-            "letters beyond ASCII");
+            "non-ASCII letters");
     put("own.toml", "scene = \"reef.pov\"\n" + text_of("rig.toml"));
     refused("study own.toml -o study", "own.toml: scene: found");
     // Nor can it be given one beside the rig: what has no promise enters no study.

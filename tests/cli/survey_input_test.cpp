@@ -240,7 +240,7 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
 
     write_map(false);
     refused(correct("colours", levels("--bayer mono")),
-            "found the image of a mono camera, and a map whose R, G and B differ");
+            "found a mono camera's image, and a map whose R, G and B differ");
 }
 
 TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
@@ -411,11 +411,11 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
             "--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels");
     write_rig("[32, 48]", kPitch_um);
     refused(correct_by_rig("stereo", levels("--bayer RGGB")),
-            "found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two cameras' images are "
-            "side by side, --half");
+            "found 64 x 48 pixels; allowed: 32 x 48, like the map; if two cameras' images are side "
+            "by side, --half");
     write_rig("[128, 95]", "68.53125");
     refused(correct_by_rig("other", levels("--bayer RGGB")),
-            "found 64 x 48 pixels; allowed: 128 x 95, as the map has");
+            "found 64 x 48 pixels; allowed: 128 x 95, like the map");
 }
 
 TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {

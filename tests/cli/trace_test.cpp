@@ -65,7 +65,7 @@ TEST_F(CommandTrace, IntegrationsKeepOutOfOtherImagesFolders) {
         const fs::path image = path(notes).parent_path() / "image.exr";
         const std::string before = read_text_file(image);
         refused("integrate rendered" + arguments,
-                notes + ": found the notes of a render or trace; allowed: ");
+                notes + ": found the record of a render or trace; allowed: ");
         EXPECT_EQ(read_text_file(image), before);
     };
     expect_refused("-o traced", "traced/trace.json");
@@ -84,7 +84,7 @@ TEST_F(CommandTrace, IsNotHeldAgainstItself) {
         fs::copy(path("rendered"), path(mixed), fs::copy_options::recursive);
         fs::copy_file(
             path("traced") / image, path(mixed) / image, fs::copy_options::overwrite_existing);
-        refused(validate(mixed), mixed + "/" + image + ": found an image of the reference tracer");
+        refused(validate(mixed), mixed + "/" + image + ": found an image by the reference tracer");
         // As the message says, the frames are still there.
         done(fmt::format("integrate {}", mixed));
         done(validate(mixed));

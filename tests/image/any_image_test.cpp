@@ -257,13 +257,11 @@ TEST(AnyImage, ATiffIsHeldAgainstItsOwnDirectoryInEitherOrderOfBytes) {
     EXPECT_EQ(fault(whole), kAccepted);
     EXPECT_EQ(fault(whole.substr(0, whole.size() - 1)),
               file.string() +
-                  fmt::format(": cannot be read: it is cut short: found {} bytes of {} and more",
+                  fmt::format(": cannot be read: it is truncated: found {} bytes of at least {}",
                               whole.size() - 1,
                               whole.size()));
-    EXPECT_EQ(
-        fault(big_endian_tiff(0)),
-        file.string() +
-            ": cannot be read: it is not whole: the bytes of its strip are missing or too few");
+    EXPECT_EQ(fault(big_endian_tiff(0)),
+              file.string() + ": cannot be read: it is incomplete: its strip has too few bytes");
 }
 
 // Whether a byte that flips is noticed. Where the format has a checksum of its pixels, always: PNG
@@ -378,8 +376,8 @@ TEST(AnyImage, WhoseWindowsDifferIsRefusedWithBoth) {
     });
     EXPECT_EQ(said,
               file.string() +
-                  ": cannot be read: its data window, 4 x 3 from 2, 1, is not its display "
-                  "window, 8 x 6 from 0, 0; allowed: both alike");
+                  ": cannot be read: its data window, 4 x 3 from 2, 1, differs from its display "
+                  "window, 8 x 6 from 0, 0; allowed: equal");
 }
 
 // Where both windows begin elsewhere than at 0, 0, the image is the same.

@@ -142,7 +142,7 @@ TEST(Exr, ThatCannotBeReadIsARunErrorThatNamesIt) {
     write_file(file, "PNG");
     EXPECT_TRUE(run_error_of([&] {
                     const ExrReader in(file);
-                }).starts_with(file.string() + ": is no readable OpenEXR image: "));
+                }).starts_with(file.string() + ": not a readable OpenEXR image: "));
 }
 
 TEST(Exr, ThatIsNotThereIsARunErrorThatNamesIt) {
@@ -164,19 +164,19 @@ TEST(Exr, WhoseWindowsDifferIsRefusedWithBoth) {
         write_file(file, exr_of_windows(data, display));
         return run_error_of([&] { const ExrReader in(file); });
     };
-    const std::string begin = file.string() + ": is no readable OpenEXR image: its data window, ";
+    const std::string begin = file.string() + ": not a readable OpenEXR image: its data window, ";
     EXPECT_EQ(fault({2, 1, 4, 3}, {0, 0, 8, 6}),
               begin +
-                  "4 x 3 from 2, 1, is not its display window, 8 x 6 from 0, 0; allowed: "
-                  "both alike");
+                  "4 x 3 from 2, 1, differs from its display window, 8 x 6 from 0, 0; allowed: "
+                  "equal");
     EXPECT_EQ(fault({-1, -1, 4, 3}, {0, 0, 2, 1}),
               begin +
-                  "4 x 3 from -1, -1, is not its display window, 2 x 1 from 0, 0; allowed: "
-                  "both alike");
+                  "4 x 3 from -1, -1, differs from its display window, 2 x 1 from 0, 0; allowed: "
+                  "equal");
     EXPECT_EQ(fault({1, 0, 4, 3}, {0, 0, 4, 3}),
               begin +
-                  "4 x 3 from 1, 0, is not its display window, 4 x 3 from 0, 0; allowed: "
-                  "both alike");
+                  "4 x 3 from 1, 0, differs from its display window, 4 x 3 from 0, 0; allowed: "
+                  "equal");
 }
 
 TEST(Exr, OfAbsurdSizeIsRefusedByItsHeader) {

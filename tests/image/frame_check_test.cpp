@@ -75,9 +75,9 @@ TEST(CheckSamples, NamesTheFirstBadPixel) {
 TEST(CheckSize, SaysWhatWasFoundAndWhatIsWanted) {
     EXPECT_NO_THROW(check_size("f.exr", 4, 3, 4, 3));
     EXPECT_EQ(run_error_of([] { check_size("f.exr", 4, 3, 3, 4); }),
-              "f.exr: found 4 x 3 pixels; wanted 3 x 4");
+              "f.exr: found 4 x 3 pixels; allowed: 3 x 4");
     EXPECT_EQ(run_error_of([] { check_size("f.exr", 4, 3, 4, 5); }),
-              "f.exr: found 4 x 3 pixels; wanted 4 x 5");
+              "f.exr: found 4 x 3 pixels; allowed: 4 x 5");
 }
 
 TEST(CheckFrame, FindsABadSampleAnywhere) {
@@ -101,7 +101,7 @@ TEST(CheckFrame, WantsItsSizeAndItsChannels) {
     const fs::path file = folder.path() / "frame.exr";
     write_frame(file, 0, 0, 0, 1.0F);
     EXPECT_EQ(run_error_of([&] { check_frame(file, kHeight, kWidth); }),
-              file.string() + ": found 5 x 150 pixels; wanted 150 x 5");
+              file.string() + ": found 5 x 150 pixels; allowed: 150 x 5");
     write_frame(file, 0, 0, 0, 1.0F, {"R", "G"});
     EXPECT_EQ(run_error_of([&] { check_frame(file, kWidth, kHeight); }),
               file.string() + ": has no channel B");

@@ -90,7 +90,7 @@ const Directory kTiles{{256, {10}},
                        {325, times(9, 12)}};
 
 std::string empty(int part, int parts) {
-    return fmt::format("it is not whole: strip or tile {} of {} is empty", part, parts);
+    return fmt::format("it is incomplete: strip or tile {} of {} is empty", part, parts);
 }
 
 TEST(WholeTiff, HasAsManyStripsAndTilesAsThePixelsNeed) {
@@ -112,7 +112,7 @@ TEST(WholeTiff, HasAsManyStripsAndTilesAsThePixelsNeed) {
 // libtiff says why, and nothing on the terminal.
 TEST(WholeTiff, WhatIsNotToldIsNotWhole) {
     const auto is_not_whole = [](const Directory& directory) {
-        return fault_of(directory).starts_with("it is not whole: ");
+        return fault_of(directory).starts_with("it is incomplete: ");
     };
     testing::internal::CaptureStderr();
     for (const auto& [directory, tags] :
@@ -133,20 +133,20 @@ TEST(WholeTiff, WhatIsNotToldIsNotWhole) {
 TEST(WholeTiff, AStripOfFewerBytesThanItsPixelsIsNotWhole) {
     const Directory one = with(kStrips, {{278, {8}}, {273, {kPixelsAt}}, {279, {16}}});
     EXPECT_EQ(fault_of(one), kAccepted);
-    const std::string fault = "it is not whole: the bytes of its strip are missing or too few";
+    const std::string fault = "it is incomplete: its strip has too few bytes";
     EXPECT_EQ(fault_of(with(one, {{279, {15}}})), fault);
     EXPECT_EQ(fault_of(with(one, {{279, {0}}})), fault);
     EXPECT_EQ(fault_of(without(one, 279)), fault);
     EXPECT_EQ(fault_of(with(one, {{273, {1985}}})),
-              "it is cut short: found 2000 bytes of 2001 and more");
+              "it is truncated: found 2000 bytes of at least 2001");
 }
 
 // Numbers whose sums and products 64 bits do not hold.
 TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
-    EXPECT_EQ(fault_of(with(kStrips, {{273, times(4, kMost - 10)}})), "it points beyond its end");
-    EXPECT_EQ(fault_of(with(kStrips, {{279, times(4, kMost)}})), "it points beyond its end");
+    EXPECT_EQ(fault_of(with(kStrips, {{273, times(4, kMost - 10)}})), "it points past its end");
+    EXPECT_EQ(fault_of(with(kStrips, {{279, times(4, kMost)}})), "it points past its end");
     EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 20, 1001}}})),
-              "it is cut short: found 2000 bytes of 2001 and more");
+              "it is truncated: found 2000 bytes of at least 2001");
     // 2^32 x 2^32 tiles are 2^64, and as 64 bits have it, 0.
     EXPECT_NE(fault_of(with(kTiles,
                             {{256, {kMost32 + 1}}, {257, {kMost32 + 1}}, {322, {1}}, {323, {1}}})),

@@ -216,8 +216,8 @@ TEST(Beams, LampsInOnePlaceAreRefused) {
         FAIL() << "no refusal";
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()),
-                  "strobes 'fore' and 'aft' have lamps in one place, and the beam 'made' is no sum "
-                  "of cones in water; allowed: lamps a micrometre apart");
+                  "strobes 'fore' and 'aft' have lamps in one place, and the beam 'made' is not a "
+                  "sum of cones in water; allowed: lamps at least a micrometre apart");
     }
 }
 

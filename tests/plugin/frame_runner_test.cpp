@@ -60,7 +60,7 @@ TEST_F(FrameRunner, SuccessWithoutAnImageIsAFailure) {
 
 TEST_F(FrameRunner, ImageOfTheWrongSizeIsRefused) {
     const std::string message = failure_of("exec " + real_povray_ + " \"$@\" +W8 +H8\n");
-    EXPECT_NE(message.find("found 8 x 8 pixels; wanted 16 x 12"), std::string::npos) << message;
+    EXPECT_NE(message.find("found 8 x 8 pixels; allowed: 16 x 12"), std::string::npos) << message;
     EXPECT_FALSE(fs::exists(image_path(folder_.path(), set_.manifest.frames[0])));
 }
 

@@ -61,7 +61,7 @@ void expect_no_change(const Rig& rig, const std::string& put_back) {
 TEST(Omissions, AMediumInClearWater) {
     Rig rig = small_habcam();
     rig.water.multiple = 0.0;
-    ASSERT_TRUE(lists(rig, "the water's medium", "clear water takes no light"));
+    ASSERT_TRUE(lists(rig, "the water's medium", "clear water attenuates nothing"));
     expect_no_change(rig, "Aphotic_Everything = true");
 }
 

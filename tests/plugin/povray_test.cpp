@@ -52,8 +52,8 @@ TEST(PovRay, BuildWithoutOpenExrIsToldAndRefusedWhereItMatters) {
     without = replaced(without, "formats: -", "formats: openexr");
     PovRay povray = povray_from(without);
     povray.executable = "/opt/povray";
-    EXPECT_EQ(message_of([&] { require_openexr(povray, "in which frames are written"); }),
-              "POV-Ray: /opt/povray: it was built without OpenEXR, in which frames are written");
+    EXPECT_EQ(message_of([&] { require_openexr(povray, "which frames need"); }),
+              "POV-Ray: /opt/povray: it was built without OpenEXR, which frames need");
 }
 
 TEST(PovRay, OtherProgramIsRefused) {

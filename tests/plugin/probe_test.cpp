@@ -32,21 +32,21 @@ Rig habcam() {
     return rig;
 }
 
-class SceneSurvey : public testing::Test {
+class SceneProbe : public testing::Test {
   protected:
-    UserScene survey(const std::string& scene, const Rig& rig = habcam()) {
+    UserScene probe(const std::string& scene, const Rig& rig = habcam()) {
         write_file(folder_.path() / "reef.pov",
                    "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
-        return survey_scene(find_povray(""),
-                            rig,
-                            folder_.path() / "reef.pov",
-                            {.jobs = 2,
-                             .library_paths = {},
-                             .progress = [this](double share) { shares_.push_back(share); },
-                             .unchecked = unchecked_});
+        return probe_scene(find_povray(""),
+                           rig,
+                           folder_.path() / "reef.pov",
+                           {.jobs = 2,
+                            .library_paths = {},
+                            .progress = [this](double share) { shares_.push_back(share); },
+                            .unchecked = unchecked_});
     }
     std::string refusal(const std::string& scene, const Rig& rig = habcam()) {
-        return refusal_of([&] { static_cast<void>(survey(scene, rig)); });
+        return refusal_of([&] { static_cast<void>(probe(scene, rig)); });
     }
     void expect_refusal(const std::string& message, const std::string& part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -57,23 +57,23 @@ class SceneSurvey : public testing::Test {
     std::vector<double> shares_;  // of the work, as they were reported
 };
 
-// The rig's own floor, whose paths its geometry tells: the survey's are these, with its room.
-TEST_F(SceneSurvey, MeasuresThePathsThatTheRigsOwnFloorHas) {
+// The rig's own floor, whose paths its geometry tells: the probe's are these, with its room.
+TEST_F(SceneProbe, MeasuresThePathsThatTheRigsOwnFloorHas) {
     const Rig rig = habcam();
-    const UserScene scene = survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n");
+    const UserScene scene = probe("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n");
     const PathRange known = path_range(rig);
     // The corners' pixels lie half a pixel inside the image.
     constexpr double kHalfPixel = 0.01;
-    EXPECT_NEAR(scene.paths.shortest_m * kSurveyRoom / known.shortest_m, 1.0, kPathError);
-    EXPECT_LE(scene.paths.longest_m / kSurveyRoom, known.longest_m * (1.0 + kPathError));
-    EXPECT_GE(scene.paths.longest_m / kSurveyRoom, known.longest_m * (1.0 - kHalfPixel));
+    EXPECT_NEAR(scene.paths.shortest_m * kProbeRoom / known.shortest_m, 1.0, kPathError);
+    EXPECT_LE(scene.paths.longest_m / kProbeRoom, known.longest_m * (1.0 + kPathError));
+    EXPECT_GE(scene.paths.longest_m / kProbeRoom, known.longest_m * (1.0 - kHalfPixel));
 }
 
 // One strobe at the camera and a plane that faces both: l = 2 d on the axis.
-TEST_F(SceneSurvey, MeasuresBrightnessAndPathInClosedForm) {
+TEST_F(SceneProbe, MeasuresBrightnessAndPathInClosedForm) {
     Rig rig = habcam();
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
-    const UserScene scene = survey(
+    const UserScene scene = probe(
         "Aphotic_Camera (1, 0.01)\nAphotic_Water ()\n"
         "Aphotic_Cone (0, z, 90, 0.25, \"xenon-flash\", 3)\n"
         "plane { -z, -1.5 pigment { Aphotic_Pigment (\"sand\") } }\n",
@@ -95,12 +95,12 @@ TEST_F(SceneSurvey, MeasuresBrightnessAndPathInClosedForm) {
                 5.0 * kPathError);
 }
 
-TEST_F(SceneSurvey, FindsTheSpectraWhereverTheyAreAskedFor) {
+TEST_F(SceneProbe, FindsTheSpectraWhereverTheyAreAskedFor) {
     write_file(folder_.path() / "mud.csv", "wavelength_nm,reflectance\n380,0.1\n780,0.3\n");
     write_file(folder_.path() / "things.inc",
                "#macro Thing (Name) sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (Name) } } "
                "#end\n");
-    const UserScene scene = survey(
+    const UserScene scene = probe(
         "#include \"things.inc\"\nAphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
         "#for (I, 0, 1) Thing (concat(\"green\", \"-algae\")) #end\n"
         "#if (false) Thing (\"red-algae\") #end\n"
@@ -113,10 +113,10 @@ TEST_F(SceneSurvey, FindsTheSpectraWhereverTheyAreAskedFor) {
 }
 
 // What a mirror shows of the void is dark, and hides nothing of what it shows beside.
-TEST_F(SceneSurvey, AReflectionIntoTheVoidHidesNoPath) {
+TEST_F(SceneProbe, AReflectionIntoTheVoidHidesNoPath) {
     const auto floor = [&](const std::string& finish) {
-        return survey("Aphotic_Rig ()\n#declare Aphotic_Seafloor_Finish = finish { " + finish +
-                      " }\nAphotic_Seafloor (2, 5, 0, \"sand\")\n");
+        return probe("Aphotic_Rig ()\n#declare Aphotic_Seafloor_Finish = finish { " + finish +
+                     " }\nAphotic_Seafloor (2, 5, 0, \"sand\")\n");
     };
     const UserScene dull = floor("diffuse 1");
     const UserScene mirror = floor("diffuse 1 reflection 0.1");
@@ -132,9 +132,9 @@ TEST_F(SceneSurvey, AReflectionIntoTheVoidHidesNoPath) {
     }
 }
 
-TEST_F(SceneSurvey, AMirroringBallHidesNoPixel) {
+TEST_F(SceneProbe, AMirroringBallHidesNoPixel) {
     const auto lit = [&](const std::string& finish) {
-        const UserScene scene = survey(
+        const UserScene scene = probe(
             "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\nsphere { <0, 0, 1.7>, 0.25 pigment { "
             "rgb 1 } finish { " +
             finish + " } }\n");
@@ -149,31 +149,31 @@ TEST_F(SceneSurvey, AMirroringBallHidesNoPixel) {
 }
 
 // Behind an endless way through the water.
-TEST_F(SceneSurvey, ASkyIsNotSeen) {
-    const UserScene scene = survey(
+TEST_F(SceneProbe, ASkyIsNotSeen) {
+    const UserScene scene = probe(
         "Aphotic_Rig ()\nsky_sphere { pigment { rgb <0.2, 0.5, 1> } }\n"
         "box { <-0.3, -0.3, 1.9>, <0.2, 0.2, 2> pigment { rgb 0.5 } }\n");
     EXPECT_TRUE(scene.no_promise.empty());
     EXPECT_LT(scene.paths.longest_m, 5.0);
 }
 
-// A hand's breadth from camera and lamp, a fiftieth of the paths for which the survey sets out.
-TEST_F(SceneSurvey, MeasuresWhatIsNear) {
+// A hand's breadth from camera and lamp, a fiftieth of the paths for which the probe sets out.
+TEST_F(SceneProbe, MeasuresWhatIsNear) {
     Rig rig = habcam();
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
-    const UserScene scene = survey(
+    const UserScene scene = probe(
         "Aphotic_Camera (1, 0.01)\nAphotic_Water ()\n"
         "Aphotic_Cone (0, z, 90, 0.25, \"xenon-flash\", 1)\n"
         "plane { -z, -0.05 pigment { rgb 0.5 } }\n",
         rig);
     constexpr double kNearPathError = 0.016;  // half floats at a loss of 1/32
-    EXPECT_NEAR(scene.paths.shortest_m * kSurveyRoom / 0.1, 1.0, kNearPathError);
-    EXPECT_NEAR(scene.paths.longest_m / kSurveyRoom / 0.1, 1.0, kNearPathError);
+    EXPECT_NEAR(scene.paths.shortest_m * kProbeRoom / 0.1, 1.0, kNearPathError);
+    EXPECT_NEAR(scene.paths.longest_m / kProbeRoom / 0.1, 1.0, kNearPathError);
 }
 
 // One run for what the scene is, one for what must not be, one a strobe.
-TEST_F(SceneSurvey, RunsPovrayOnceForEachAnswerAndTellsItsProgress) {
-    static_cast<void>(survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
+TEST_F(SceneProbe, RunsPovrayOnceForEachAnswerAndTellsItsProgress) {
+    static_cast<void>(probe("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
     EXPECT_EQ(shares_.size(), 2U + habcam().strobes.size());
     EXPECT_TRUE(std::ranges::is_sorted(shares_));
     EXPECT_EQ(shares_.back(), 1.0);
@@ -185,21 +185,21 @@ constexpr const char* kWrites =
     "#write (Out, \"sphere { <0, 0, 1.9>, \")\n#for (I, 0, 20000) #end\n"
     "#write (Out, \"0.1 pigment { rgb 0.5 } }\\n\")\n#fclose Out\n#include \"ball.inc\"\n";
 
-TEST_F(SceneSurvey, OneThatReadsWhatItWritesIsLookedAtOneAtATime) {
-    const UserScene first = survey(kWrites);
+TEST_F(SceneProbe, OneThatReadsWhatItWritesIsLookedAtOneAtATime) {
+    const UserScene first = probe(kWrites);
     EXPECT_TRUE(first.writes_files);
-    EXPECT_EQ(survey(kWrites).digest, first.digest) << "also where the file is there already";
-    EXPECT_FALSE(survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n").writes_files);
+    EXPECT_EQ(probe(kWrites).digest, first.digest) << "also where the file is there already";
+    EXPECT_FALSE(probe("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n").writes_files);
 }
 
-TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
+TEST_F(SceneProbe, OneThatWritesSomethingElseEachTimeIsNamed) {
     try {
         static_cast<void>(
-            survey("#fopen Log \"log.txt\" append\n#write (Log, \"again\")\n#fclose Log\n"
-                   "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
+            probe("#fopen Log \"log.txt\" append\n#write (Log, \"again\")\n#fclose Log\n"
+                  "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
         FAIL() << "nothing was said";
     } catch (const RunError& error) {
-        EXPECT_NE(std::string(error.what()).find("What it writes itself must be the same"),
+        EXPECT_NE(std::string(error.what()).find("Files that it writes itself must be the same"),
                   std::string::npos)
             << error.what();
     }
@@ -209,17 +209,17 @@ TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
 
 constexpr const char* kScene = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
 
-TEST_F(SceneSurvey, RefusesLightsThatAreNotOurs) {
+TEST_F(SceneProbe, RefusesLightsThatAreNotOurs) {
     expect_refusal(refusal(std::string(kScene) + "light_source { <0, 0, -9>, rgb 1 }\n"),
-                   "reef.pov: found 1 light source that is no strobe of aphotic.inc");
+                   "reef.pov: found 1 light source that is not from aphotic.inc");
 }
 
-TEST_F(SceneSurvey, RefusesASceneWithoutStrobes) {
+TEST_F(SceneProbe, RefusesASceneWithoutStrobes) {
     expect_refusal(refusal("Aphotic_Rig_Camera ()\nAphotic_Water ()\nAphotic_Rig_Seafloor ()\n"),
                    "found no strobe");
 }
 
-TEST_F(SceneSurvey, RefusesASceneWithoutWater) {
+TEST_F(SceneProbe, RefusesASceneWithoutWater) {
     const std::string scene =
         "Aphotic_Rig_Camera ()\nAphotic_Rig_Strobes ()\nAphotic_Rig_Seafloor ()\n";
     expect_refusal(refusal(scene), "found no water");
@@ -228,7 +228,7 @@ TEST_F(SceneSurvey, RefusesASceneWithoutWater) {
     EXPECT_EQ(refusal(scene, clear), "nothing was said");
 }
 
-TEST_F(SceneSurvey, RefusesASceneWithoutTheRigsPort) {
+TEST_F(SceneProbe, RefusesASceneWithoutTheRigsPort) {
     Rig rig = habcam();
     rig.camera.port =
         PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
@@ -239,13 +239,13 @@ TEST_F(SceneSurvey, RefusesASceneWithoutTheRigsPort) {
                    "found no port, and the rig has one");
 }
 
-TEST_F(SceneSurvey, RefusesALampThatTheRigDoesNotHave) {
+TEST_F(SceneProbe, RefusesALampThatTheRigDoesNotHave) {
     expect_refusal(refusal(std::string(kScene) + "Aphotic_Cone (0, z, 90, 1, \"xenon-arc\", 1)\n"),
                    "found the lamp \"xenon-arc\"; allowed: the spectra of the rig's strobes, "
                    "\"xenon-flash\"");
 }
 
-TEST_F(SceneSurvey, RefusesASpectrumThatIsNotThere) {
+TEST_F(SceneProbe, RefusesASpectrumThatIsNotThere) {
     const std::string ball = "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"";
     expect_refusal(refusal(kScene + ball + "snad\") } }\n"),
                    "reef.pov: Aphotic_Pigment (\"snad\"): ");
@@ -254,36 +254,36 @@ TEST_F(SceneSurvey, RefusesASpectrumThatIsNotThere) {
     expect_refusal(refusal(kScene + ball + "short.csv\") } }\n"), "range_nm");
 }
 
-TEST_F(SceneSurvey, RefusesASpectrumsNameThatIsMisspelt) {
+TEST_F(SceneProbe, RefusesASpectrumsNameThatIsMisspelt) {
     expect_refusal(
         refusal(std::string(kScene) +
                 "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"green-alga\") } }\n"),
-        "is no known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
+        "is not a known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
 }
 
-TEST_F(SceneSurvey, RefusesMoreLightsThanPovrayTakesInWater) {
+TEST_F(SceneProbe, RefusesMoreLightsThanPovrayTakesInWater) {
     expect_refusal(refusal(std::string(kScene) +
                            "#for (I, 1, 1019) Aphotic_Cone (<0, 0, -I / 1000>, z, 90, 1, "
                            "\"xenon-flash\", 1) #end\n"),
                    "found 1025 cones of light; allowed: 1024");
 }
 
-TEST_F(SceneSurvey, RefusesANameThatPovrayCannotInclude) {
+TEST_F(SceneProbe, RefusesANameThatPovrayCannotInclude) {
     for (const char* name : {"r\"eef.pov",
                              "r\\eef.pov",
                              "r\xC3\xA9"
                              "ef.pov"}) {
         write_file(folder_.path() / name, "#version 3.7;\n");
-        EXPECT_THROW(static_cast<void>(survey_scene(find_povray(""),
-                                                    habcam(),
-                                                    folder_.path() / name,
-                                                    {.jobs = 1, .library_paths = {}})),
+        EXPECT_THROW(static_cast<void>(probe_scene(find_povray(""),
+                                                   habcam(),
+                                                   folder_.path() / name,
+                                                   {.jobs = 1, .library_paths = {}})),
                      InputError)
             << name;
     }
 }
 
-TEST_F(SceneSurvey, RefusesAnotherCamera) {
+TEST_F(SceneProbe, RefusesAnotherCamera) {
     expect_refusal(refusal(std::string(kScene) + "camera { location <0, 0, 0> direction z }\n"),
                    "found a second camera");
     expect_refusal(refusal("Aphotic_Rig_Strobes ()\nAphotic_Water ()\nAphotic_Rig_Seafloor ()\n"
@@ -291,7 +291,7 @@ TEST_F(SceneSurvey, RefusesAnotherCamera) {
                    "found no camera of aphotic.inc");
 }
 
-TEST_F(SceneSurvey, RefusesLightThatNoStrobeGives) {
+TEST_F(SceneProbe, RefusesLightThatNoStrobeGives) {
     expect_refusal(
         refusal(std::string(kScene) +
                 "sphere { <0, 0, 1.9>, 0.1 finish { emission 0.01 } pigment { rgb 1 } }\n"),
@@ -302,30 +302,30 @@ TEST_F(SceneSurvey, RefusesLightThatNoStrobeGives) {
         "found light with all strobes off");
 }
 
-TEST_F(SceneSurvey, RefusesACameraInAnObjectWithoutWater) {
+TEST_F(SceneProbe, RefusesACameraInAnObjectWithoutWater) {
     expect_refusal(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } }\n"),
                    "found no water between the camera and what it sees");
     EXPECT_EQ(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } hollow }\n"),
               "nothing was said");
 }
 
-TEST_F(SceneSurvey, ColoursByNumbersVoidThePromise) {
-    EXPECT_TRUE(survey(kScene).no_promise.empty());
-    EXPECT_TRUE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
+TEST_F(SceneProbe, ColoursByNumbersVoidThePromise) {
+    EXPECT_TRUE(probe(kScene).no_promise.empty());
+    EXPECT_TRUE(probe(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
                     .no_promise.empty());
     EXPECT_EQ(
-        survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n")
+        probe(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n")
             .no_promise.size(),
         1U);
 }
 
 // A disc 5 cm under a lamp, where all three channels are more than half floats hold.
-TEST_F(SceneSurvey, ColoursByNumbersVoidThePromiseWhereTheyAreBrightToo) {
+TEST_F(SceneProbe, ColoursByNumbersVoidThePromiseWhereTheyAreBrightToo) {
     const auto reasons = [&](const std::string& colour) {
-        return survey(std::string(kScene) +
-                      "Aphotic_Cone (<0, 0, 1.9>, z, 80, 30000, \"xenon-flash\", 1)\n"
-                      "disc { <0, 0, 1.95>, z, 0.1 pigment { rgb " +
-                      colour + " } }\n")
+        return probe(std::string(kScene) +
+                     "Aphotic_Cone (<0, 0, 1.9>, z, 80, 30000, \"xenon-flash\", 1)\n"
+                     "disc { <0, 0, 1.95>, z, 0.1 pigment { rgb " +
+                     colour + " } }\n")
             .no_promise.size();
     };
     EXPECT_EQ(reasons("<1, 0.5, 0.25>"), 1U);
@@ -342,16 +342,16 @@ struct OwnLight {
     }
 };
 
-class UnboundedLight : public SceneSurvey, public testing::WithParamInterface<OwnLight> {};
+class UnboundedLight : public SceneProbe, public testing::WithParamInterface<OwnLight> {};
 
 TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
     const auto& [what, scene] = GetParam();
     expect_refusal(refusal(std::string(kScene) + scene),
                    "found " + std::string(what) + "; not supported: ");
     unchecked_ = true;
-    const UserScene surveyed = survey(std::string(kScene) + scene);
-    ASSERT_EQ(surveyed.no_promise.size(), 1U);
-    EXPECT_TRUE(surveyed.no_promise[0].starts_with(what)) << surveyed.no_promise[0];
+    const UserScene probed = probe(std::string(kScene) + scene);
+    ASSERT_EQ(probed.no_promise.size(), 1U);
+    EXPECT_TRUE(probed.no_promise[0].starts_with(what)) << probed.no_promise[0];
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -365,19 +365,19 @@ INSTANTIATE_TEST_SUITE_P(
                  "global_settings { photons { count 50 } }\n"
                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
                  "photons { target refraction on } }\n"},
-        OwnLight{"media of the scene's own",
+        OwnLight{"the scene's own media",
                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
                  "media { samples 1 scattering { 1, 0.5 } } } }\n"}));
 
 // Thirty times deeper than the rig's floor, and a lamp a hand's breadth over it: neither is lost.
-TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
-    const UserScene deep = survey(
+TEST_F(SceneProbe, MeasuresWhatIsFarFromTheRigsOwnFloor) {
+    const UserScene deep = probe(
         "Aphotic_Rig ()\n"
         "plane { -z, -60 pigment { Aphotic_Pigment (\"sand\") } }\n"
         "box { <0, -9, 1.9>, <9, 9, 2> pigment { Aphotic_Pigment (\"sand\") } }\n");
     EXPECT_GT(deep.paths.longest_m, 120.0);
     EXPECT_LT(deep.paths.shortest_m, 4.0);
-    const UserScene bright = survey(
+    const UserScene bright = probe(
         "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
         "Aphotic_Cone (<0, 0, 1.9>, z, 89, 30000, \"xenon-flash\", 1)\n");
     double brightest = 0.0;
@@ -391,12 +391,12 @@ TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
     EXPECT_NEAR(brightest / (30000.0 / (std::numbers::pi * 0.01)), 1.0, kTilt);
 }
 
-TEST_F(SceneSurvey, RefusesASceneOfWhichNothingIsLit) {
+TEST_F(SceneProbe, RefusesASceneOfWhichNothingIsLit) {
     expect_refusal(refusal("Aphotic_Rig ()\nsphere { <0, 0, -5>, 1 }\n"),
                    "found nothing in view that a strobe lights");
 }
 
-TEST_F(SceneSurvey, ParseErrorsComeWithTheUsersFileAndLine) {
+TEST_F(SceneProbe, ParseErrorsComeWithTheUsersFileAndLine) {
     expect_refusal(refusal(std::string(kScene) + "sphere { nonsense }\n"),
                    "File 'reef.pov' line 5: Parse Error");
     write_file(folder_.path() / "things.inc", "\n\nsphere { nonsense }\n");
@@ -405,7 +405,7 @@ TEST_F(SceneSurvey, ParseErrorsComeWithTheUsersFileAndLine) {
 }
 
 // The scratch folder is gone when the message is read.
-TEST_F(SceneSurvey, ErrorsNameNoFileThatIsGone) {
+TEST_F(SceneProbe, ErrorsNameNoFileThatIsGone) {
     const std::string twice = refusal(std::string(kScene) + "Aphotic_Water ()\n");
     expect_refusal(twice, "\nFile 'aphotic.inc' line ");
     const std::string open = refusal(std::string(kScene) + "#if (true)\n");
@@ -415,25 +415,27 @@ TEST_F(SceneSurvey, ErrorsNameNoFileThatIsGone) {
     }
 }
 
-TEST_F(SceneSurvey, RefusesLightUnderNought) {
+TEST_F(SceneProbe, RefusesLightUnderNought) {
     expect_refusal(
         refusal(std::string(kScene) + "sphere { <0, 0, 1.8>, 0.2 pigment { rgb -0.5 } }\n"),
-        "allowed: 0 and more. Is there a colour under 0?");
+        "allowed: 0 or more. Is there a colour below 0?");
 }
 
 // The camera looks out of a block without water, in which a lamp lights a part of the floor.
-TEST_F(SceneSurvey, RefusesWhatNoWaterDimsInAPartOfTheImage) {
+TEST_F(SceneProbe, RefusesWhatNoWaterDimsInAPartOfTheImage) {
     const std::string dry = std::string(kScene) +
                             "box { <-0.3, -0.3, -1>, <0.3, 0.3, 2.5> pigment { rgbt 1 } }\n"
                             "Aphotic_Cone (0, z, 60, 1, \"xenon-flash\", 1)\n";
-    expect_refusal(refusal(dry), "found light that no water dims, in ");
+    expect_refusal(refusal(dry), "found light that passes through no water, in ");
     // Where the promise is void by another fault, this one is named too.
     const std::vector<std::string> reasons =
-        survey(dry + "sphere { <0.6, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n").no_promise;
+        probe(dry + "sphere { <0.6, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n").no_promise;
     ASSERT_EQ(reasons.size(), 2U);
     std::smatch counts;
     ASSERT_TRUE(std::regex_match(
-        reasons[1], counts, std::regex(R"(light that no water dims, in (\d+) of (\d+) pixels)")))
+        reasons[1],
+        counts,
+        std::regex(R"(light that passes through no water, in (\d+) of (\d+) pixels)")))
         << reasons[1];
     // The block is square, 0.6 m wide, and no farther than the floor at 2 m: each pixel counts
     // once, however many strobes shine on it.
@@ -441,8 +443,8 @@ TEST_F(SceneSurvey, RefusesWhatNoWaterDimsInAPartOfTheImage) {
     EXPECT_LT(std::stoi(counts[1]), std::stoi(counts[2]) / 2);
 }
 
-TEST_F(SceneSurvey, LeavesTheUsersFolderAsItWas) {
-    static_cast<void>(survey(kScene));
+TEST_F(SceneProbe, LeavesTheUsersFolderAsItWas) {
+    static_cast<void>(probe(kScene));
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
         names.push_back(entry.path().filename().string());

@@ -80,7 +80,7 @@ def test_a_maker_maps_other_poses_and_places(rig_file):
     np.testing.assert_allclose(maker.map().floor, aphotic.lightmap(other).floor, rtol=MAP_ERROR)
     own = aphotic.LightmapMaker(rig)
     np.testing.assert_allclose(own.map().floor, aphotic.lightmap(rig).floor, rtol=MAP_ERROR)
-    with pytest.raises(aphotic.InputError, match="the image sees paths longer than the tables serve"):
+    with pytest.raises(aphotic.InputError, match="the image sees paths longer than the tables cover"):
         own.map(altitude_m=3.0)
 
 

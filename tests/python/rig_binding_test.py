@@ -56,7 +56,7 @@ def test_bad_values_are_refused(rig_file):
     rig = aphotic.Rig.load(rig_file)
     with pytest.raises(aphotic.InputError, match="sled.altitude_m: found -1; allowed"):
         rig.replace(**{"sled.altitude_m": -1})
-    with pytest.raises(aphotic.InputError, match="allowed: a number, a text"):
+    with pytest.raises(aphotic.InputError, match="allowed: a number, a string"):
         rig.replace(**{"sled.altitude_m": {"a": 1}})
     with pytest.raises(aphotic.InputError, match="no-such"):
         rig.replace(**{"strobe.no-such.power": 1.0})

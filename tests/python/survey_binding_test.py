@@ -90,7 +90,7 @@ def test_an_image_of_the_map_comes_out_flat(rig_file):
 
 def test_bad_images_are_refused(rig_file):
     light = aphotic.lightmap(aphotic.Rig.load(rig_file))
-    with pytest.raises(aphotic.InputError, match="as the map has"):
+    with pytest.raises(aphotic.InputError, match="like the map"):
         aphotic.correct(np.ones((10, 10), np.float32), light, bayer="RGGB")
     with pytest.raises(aphotic.InputError, match="bayer: found 'RGBG'"):
         aphotic.correct(np.ones((36, 48), np.float32), light, bayer="RGBG")

@@ -39,7 +39,7 @@ Pairs omitted(const Rig& rig) {
 }
 
 const std::pair<std::string, std::string> kMedium{"the water's medium",
-                                                  "clear water takes no light"};
+                                                  "clear water attenuates nothing"};
 const std::pair<std::string, std::string> kNoPort{"a port",
                                                   "none is given: the pupil is in the water"};
 const std::pair<std::string, std::string> kNoHighlight{"the floor's highlight",

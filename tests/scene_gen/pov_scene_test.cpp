@@ -226,7 +226,7 @@ TEST(PovScene, HasPortsInUnitsInWhichPovrayFindsTheirSurfaces) {
     rig.camera.port->dome->centre_m.z() = 0.049999;
     EXPECT_EQ(input_error(rig),
               "camera.port: found 0.001 mm of air between the pupil and the glass; allowed for a "
-              "render: 0.01 mm and more, for POV-Ray takes no notice of surfaces that are nearer");
+              "render: 0.01 mm or more, since POV-Ray ignores surfaces that are closer");
 }
 
 TEST(PovScene, RefusesATiltedPortThatRaysHardlyMeet) {
@@ -250,7 +250,7 @@ TEST(PovScene, RefusesAnEmitterThatReachesUnderTheFloor) {
         << "lamps at 7.5 cm from the middle";
     const std::string message =
         input_error(rig, {.emitter_lamps = LampGrid{.across = 1, .along = 4}});
-    EXPECT_TRUE(message.starts_with("strobe 'fore' has a lamp at or under the sea floor"))
+    EXPECT_TRUE(message.starts_with("strobe 'fore' has a lamp at or below the sea floor"))
         << message;
 }
 

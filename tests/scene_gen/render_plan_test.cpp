@@ -346,12 +346,12 @@ TEST(RenderPlan, RefusesListedWavelengthsOutOfOrderOrRange) {
     PlanRequest request;
     request.wavelengths_nm = {550.0, 500.0};
     EXPECT_EQ(error_of(habcam(), request),
-              "wavelengths: found 500 nm in place 2; allowed: increasing wavelengths from 400 to "
-              "720 nm");
+              "wavelengths: found 500 nm at position 2; allowed: increasing wavelengths from 400 "
+              "to 720 nm");
     request.wavelengths_nm = {390.0, 500.0};
     EXPECT_EQ(error_of(habcam(), request),
-              "wavelengths: found 390 nm in place 1; allowed: increasing wavelengths from 400 to "
-              "720 nm");
+              "wavelengths: found 390 nm at position 1; allowed: increasing wavelengths from 400 "
+              "to 720 nm");
 }
 
 // --- Paths, materials, water ----------------------------------------------------------- --------
@@ -463,7 +463,7 @@ TEST(RenderPlan, RefusesATooSmallToleranceAndKeepsTheOneThatItOffers) {
         request.tolerance = 1e-5;
         const std::string message = error_of(rig, request);
         ASSERT_TRUE(message.starts_with(kStart)) << rig.title << ": " << message;
-        EXPECT_TRUE(message.ends_with(" wavelengths keep")) << rig.title << ": " << message;
+        EXPECT_TRUE(message.ends_with(" wavelengths achieve")) << rig.title << ": " << message;
         request.tolerance = std::stod(message.substr(kStart.size()));
         EXPECT_GE(request.tolerance, kFrameError) << message;
         EXPECT_LE(plan_render(rig, request).promise(), request.tolerance) << rig.title << message;
@@ -480,7 +480,7 @@ TEST(RenderPlan, NamesAFocalLengthThatNoLensHasWhereItCannotKeepATolerance) {
     request.tolerance = 4.95e-4;
     const std::string error = error_of(rig, request);
     EXPECT_TRUE(error.starts_with("tolerance: found 0.000495; allowed: ")) << error;
-    EXPECT_NE(error.find("camera.focal_length_mm: 0.6628 makes a view of 166.2 degrees"),
+    EXPECT_NE(error.find("camera.focal_length_mm: 0.6628 gives a field of view of 166.2 degrees"),
               std::string::npos)
         << error;
     rig.camera.focal_length_m = 12e-3;

@@ -173,17 +173,17 @@ TEST(Shortage, IsNoneWhereThereIsJustEnough) {
 
 TEST(Shortage, OfTheFolderSaysWhatIsNeededAndFree) {
     EXPECT_EQ(shortage(kNeeds, free_of(4.1, 9.0, false), "out"),
-              "needs up to 12.3 GB in out, 4.1 GB are free");
+              "needs up to 12.3 GB in out, 4.1 GB free");
 }
 
 TEST(Shortage, OfOneDiskIsOfBothTogether) {
     EXPECT_EQ(shortage(kNeeds, free_of(13.0, 13.0, true), "out"),
-              "needs up to 17.3 GB in out and /tmp, 13 GB are free");
+              "needs up to 17.3 GB in out and /tmp, 13 GB free");
 }
 
 TEST(Shortage, OfTheTemporaryFolderNamesIt) {
     EXPECT_EQ(shortage(kNeeds, free_of(99.0, 4.9, false), "out"),
-              "needs up to 5 GB in /tmp, 4.9 GB are free");
+              "needs up to 5 GB in /tmp, 4.9 GB free");
 }
 
 TEST(BytesInWords, HaveThreeDigits) {

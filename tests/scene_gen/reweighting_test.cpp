@@ -349,7 +349,7 @@ TEST(Reintegrate, CannotShiftPowerBetweenStrobes) {
     constexpr double kThird = 1.0 / 3.0;
     const Rig now = changed(habcam(), [](Rig& rig) { rig.strobes[1].power = 2.0; });
     const std::string message = error_of(now, habcams());
-    const std::string start = "the frames can be this rig's image to ";
+    const std::string start = "the frames give this rig's image to ";
     ASSERT_TRUE(message.starts_with(start)) << message;
     EXPECT_NEAR(std::stod(message.substr(start.size())), kThird, 1e-2) << message;
     // Nor can the lamp of one.
@@ -378,7 +378,7 @@ TEST(Reintegrate, NamesTheFramesThatItLacks) {
     for (const double multiple : {2.0, 8.0, 20.0}) {
         const Rig now = changed(habcam(), [&](Rig& rig) { rig.water.multiple = multiple; });
         const std::string message = error_of(now, habcams());
-        const std::string start = "the frames can be this rig's image to ";
+        const std::string start = "the frames give this rig's image to ";
         ASSERT_TRUE(message.starts_with(start)) << message;
         EXPECT_GT(std::stod(message.substr(start.size())), kTolerance) << message;
         EXPECT_NE(message.find(" only; allowed: 0.001, the tolerance; it lacks "),
@@ -416,7 +416,7 @@ TEST(Reintegrate, NamesTheFramesThatItLacks) {
 // What is refused at one tolerance is taken at the next.
 TEST(Reintegrate, TakesWhatTheToleranceAllows) {
     const Rig now = changed(habcam(), [](Rig& rig) { rig.water.multiple = 20.0; });
-    const std::string start = "the frames can be this rig's image to ";
+    const std::string start = "the frames give this rig's image to ";
     const std::string message = error_of(now, habcams(), kTolerance);
     ASSERT_TRUE(message.starts_with(start)) << message;
     const double least = std::stod(message.substr(start.size()));
@@ -500,10 +500,10 @@ TEST(Reintegrate, NamesWhatDiffers) {
          "strobes: found starboard, aft, port, fore; allowed: fore, aft, port, starboard, as"},
         {own,
          [](Rig& r) { r.strobes[2].power = 0.0; },
-         "strobe 'port': found power 0; allowed: more, for the frames hold its light"},
+         "strobe 'port': found power 0; allowed: more, since the frames hold its light"},
         {dark,
          [](Rig& r) { r.strobes[2].power = 1.0; },
-         "the frames can be this rig's image to 1 only; "},
+         "the frames give this rig's image to 1 only; "},
         {own,
          [&](Rig& r) { r = port.rig; },
          "camera.port: found " + bk7 + "; allowed: none, as the frames were rendered"},

@@ -42,9 +42,9 @@ TEST(SceneSet, RefusesLightThatFramesDoNotHoldAndThatCounts) {
     plan.wavelengths.back().weight = {1e57, 0.0, 0.0};
     const std::string refusal = refusal_of(100.0, plan);
     EXPECT_TRUE(refusal.starts_with("found light of at most ")) << refusal;
-    EXPECT_NE(
-        refusal.find(" at 650 nm, fainter than frames hold, which counts in R by a weight of "),
-        std::string::npos)
+    EXPECT_NE(refusal.find(
+                  " at 650 nm, fainter than frames can hold, which counts in R with a weight of "),
+              std::string::npos)
         << refusal;
 }
 
@@ -96,10 +96,10 @@ std::string refusal_of(const std::vector<PlannedWavelength>& wavelengths) {
 // 2^-114 is held as 2^-14, the last with all digits.
 TEST(LostLight, IsBelowTheLeastNormalHalfFloat) {
     EXPECT_EQ(refusal_of(green_and_red(-114)), "none");
-    EXPECT_EQ(refusal_of(green_and_red(-115)),
-              "found light of at most 2.4e-35 at 650 nm, fainter than frames hold, which counts in "
-              "R by a weight of 4.2e+34; allowed: wavelengths that frames hold, or that count for "
-              "nothing");
+    EXPECT_EQ(
+        refusal_of(green_and_red(-115)),
+        "found light of at most 2.4e-35 at 650 nm, fainter than frames can hold, which counts in R "
+        "with a weight of 4.2e+34; allowed: wavelengths that frames can hold, or of no weight");
 }
 
 TEST(LostLight, IsNoMatterWhereItCountsForNothing) {

@@ -28,8 +28,8 @@ TEST(UserScene, PathsHaveRoomOnBothSides) {
         {{{.radiance_per_flux = 1.0, .path_m = 3.0}},
          {},
          {{.radiance_per_flux = 1.0, .path_m = 2.0}, {.radiance_per_flux = 0.1, .path_m = 5.0}}});
-    EXPECT_DOUBLE_EQ(paths.shortest_m, 2.0 / kSurveyRoom);
-    EXPECT_DOUBLE_EQ(paths.longest_m, 5.0 * kSurveyRoom);
+    EXPECT_DOUBLE_EQ(paths.shortest_m, 2.0 / kProbeRoom);
+    EXPECT_DOUBLE_EQ(paths.longest_m, 5.0 * kProbeRoom);
     EXPECT_EQ(paths_of({{}, {}}).longest_m, 0.0);
 }
 

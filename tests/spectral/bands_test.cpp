@@ -106,12 +106,12 @@ TEST(EqualBands, AMillionSumToTheIntegralInAnyOrder) {
 
 TEST(Wavelengths, MustIncreaseWithinTheRange) {
     const std::string allowed = "; allowed: increasing wavelengths from 400 to 700 nm";
-    EXPECT_EQ(listed_error({399.9}), "wavelengths: found 399.9 nm in place 1" + allowed);
-    EXPECT_EQ(listed_error({500.0, 700.1}), "wavelengths: found 700.1 nm in place 2" + allowed);
-    EXPECT_EQ(listed_error({500.0, 500.0}), "wavelengths: found 500 nm in place 2" + allowed);
+    EXPECT_EQ(listed_error({399.9}), "wavelengths: found 399.9 nm at position 1" + allowed);
+    EXPECT_EQ(listed_error({500.0, 700.1}), "wavelengths: found 700.1 nm at position 2" + allowed);
+    EXPECT_EQ(listed_error({500.0, 500.0}), "wavelengths: found 500 nm at position 2" + allowed);
     EXPECT_EQ(listed_error({500.0, 600.0, 550.0}),
-              "wavelengths: found 550 nm in place 3" + allowed);
-    EXPECT_EQ(listed_error({std::nan("")}), "wavelengths: found nan nm in place 1" + allowed);
+              "wavelengths: found 550 nm at position 3" + allowed);
+    EXPECT_EQ(listed_error({std::nan("")}), "wavelengths: found nan nm at position 1" + allowed);
     EXPECT_EQ(listed_error({400.0, 700.0}), "nothing was said");
 }
 

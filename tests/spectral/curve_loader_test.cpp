@@ -123,9 +123,8 @@ TEST(BuiltinTables, ColourMatchingFunctionsHaveThePublishedSums) {
 TEST(BuiltinTable, NamesTheNearestAndAllNames) {
     const std::string message =
         message_of([] { static_cast<void>(builtin_table("pope-fry-1979")); });
-    EXPECT_TRUE(
-        message.starts_with("no built-in table is called 'pope-fry-1979'; did you mean "
-                            "'pope-fry-1997'?; allowed: "))
+    EXPECT_TRUE(message.starts_with(
+        "no built-in table is named 'pope-fry-1979'; did you mean 'pope-fry-1997'?; allowed: "))
         << message;
     for (const BuiltinTable& table : builtin_tables()) {
         EXPECT_NE(message.find(table.name), std::string::npos) << table.name;

@@ -322,15 +322,15 @@ TEST(Integrator, RefusesWhatNoFloatHolds) {
     signal.add_wavelength(450.0, {1.0, 0x1p125, 1.0}, 0, "R", 0);
     EXPECT_EQ(signal.error(), "no error");
     signal.manifest().wavelengths[0].weight[1] = 0x1p126;
-    EXPECT_EQ(signal.error(),
-              (signal.folder() / "manifest.json").string() +
-                  ": G comes out as inf at column 2, row 1; allowed: weights and exposures that "
-                  "keep it finite");
+    EXPECT_EQ(
+        signal.error(),
+        (signal.folder() / "manifest.json").string() +
+            ": G is inf at column 2, row 1; allowed: weights and exposures that keep it finite");
 
     Render radiance(1, 1);
     radiance.add_frame("f", [](int, int, int) { return 1.0F; });
     radiance.add_wavelength(450.0, {0x1p-10, 0x1p-10, 0x1p-10}, 0, "R", -130);
-    EXPECT_NE(radiance.error().find(": R comes out as inf at column 0, row 0"), std::string::npos);
+    EXPECT_NE(radiance.error().find(": R is inf at column 0, row 0"), std::string::npos);
 }
 
 TEST(Integrator, RefusesAFrameThatIsNotWhatItShouldBe) {
@@ -343,17 +343,17 @@ TEST(Integrator, RefusesAFrameThatIsNotWhatItShouldBe) {
     for (const Case& each : {
              Case{[](const fs::path& f) { fs::remove(f); },
                   false,
-                  ": this frame is missing; render it first"},
+                  ": the frame is missing; render it first"},
              {[](const fs::path& f) { write_frame(f, 3, 40, ramp); },
               true,
-              ": found 3 x 40 pixels; wanted 4 x 40"},
+              ": found 3 x 40 pixels; allowed: 4 x 40"},
              {[&](const fs::path& f) { write_frame(f, 4, 40, dark); },
               false,
-              ": is not the image that the manifest notes"},
+              ": is not the image recorded in the manifest"},
              {[](const fs::path& f) { fs::resize_file(f, fs::file_size(f) - 20); }, true, ": "},
              {[](const fs::path& f) { write_file(f, "no image"); },
               true,
-              ": is no readable OpenEXR image: "},
+              ": not a readable OpenEXR image: "},
          }) {
         Render render(4, 40);
         fill(render);
@@ -470,10 +470,10 @@ TEST(Integrator, AVeilThatIsMissingOrAnotherIsARunError) {
     add_veil(render, kVeilPlanes);
     const fs::path file = veil_path(render.folder());
     render.manifest().veil->sha256 = "another";
-    EXPECT_EQ(render.error(), file.string() + ": is not the veil that the manifest notes");
+    EXPECT_EQ(render.error(), file.string() + ": is not the veil recorded in the manifest");
     fs::remove(file);
     EXPECT_EQ(render.error(),
-              file.string() + ": the veil is missing; `aphotic render` makes it of its frames");
+              file.string() + ": the veil is missing; `aphotic render` makes it from its frames");
 }
 
 }  // namespace aphotic::integrator_test

@@ -195,7 +195,8 @@ TEST(Manifest, ThatIsNoJsonIsRefused) {
             static_cast<void>(read_manifest(folder.path()));
             FAIL() << "no error for " << text;
         } catch (const InputError& error) {
-            EXPECT_EQ(error.what(), (folder.path() / "manifest.json").string() + ": is not JSON");
+            EXPECT_EQ(error.what(),
+                      (folder.path() / "manifest.json").string() + ": not valid JSON");
         }
     }
     EXPECT_EQ(error_after([](Json& json) { json = Json::array(); }),
@@ -244,7 +245,7 @@ TEST(Manifest, ChangedSinceItWasWrittenIsRefused) {
     };
     EXPECT_EQ(error_of([](Json&) {}), "no error") << "laid out anew";
     const std::string refused = file.string() +
-                                ": sha256: is not that of the rest, which was changed since it was "
+                                ": sha256: does not match the rest, which was changed after it was "
                                 "written; allowed: a manifest as aphotic wrote it";
     EXPECT_EQ(error_of([](Json& json) { json["rig_title"] = "another"; }), refused);
     EXPECT_EQ(error_of([](Json& json) { json["tolerance"] = 0.5; }), refused);
@@ -252,7 +253,7 @@ TEST(Manifest, ChangedSinceItWasWrittenIsRefused) {
     EXPECT_EQ(error_of([](Json& json) { json["wavelengths"][1]["weight"][2] = 0.5; }), refused);
     EXPECT_EQ(error_of([](Json& json) { json["more"] = 1; }), refused);
     EXPECT_EQ(error_of([](Json& json) { json.erase("sha256"); }),
-              file.string() + ": sha256: found nothing; allowed: a text");
+              file.string() + ": sha256: found nothing; allowed: a string");
 }
 
 // A value in place of a good one, by its place in the file.
@@ -267,15 +268,15 @@ TEST(Manifest, RefusesValuesThatNoManifestHas) {
         {"/format",
          {"aphotic-manifest-4"},
          "\"aphotic-manifest-5\", which this version writes: render again, into another folder"},
-        {"/aphotic_version", {7}, "a text"},
-        {"/povray_version", {7}, "a text"},
-        {"/rig_title", {7}, "a text"},
-        {"/rig_sha256", {7}, "a text"},
-        {"/method", {7}, "a text"},
+        {"/aphotic_version", {7}, "a string"},
+        {"/povray_version", {7}, "a string"},
+        {"/rig_title", {7}, "a string"},
+        {"/rig_sha256", {7}, "a string"},
+        {"/method", {7}, "a string"},
         {"/width_px", {"7", 7.5, 0, 16385, true}, "a whole number from 1 to 16384"},
         {"/height_px", {"7", 7.5, 0, 16385, true}, "a whole number from 1 to 16384"},
         {"/lamp_signal", {1.0, {1, 2}, {1, 2, 3, 4}, {1, 2, "3"}}, "three numbers"},
-        {"/geometry", {{{"sled", 2}}}, "an object of texts"},
+        {"/geometry", {{{"sled", 2}}}, "an object of strings"},
         {"/quality", {7}, "a list of objects"},
         {"/quality", {Json::array({{{"amplification", 1.0}, {"error", 0.0}}})}, "3 objects"},
         {"/strobes", {7}, "a list of objects"},
@@ -284,11 +285,11 @@ TEST(Manifest, RefusesValuesThatNoManifestHas) {
         {"/wavelengths", {Json::array()}, "at least one"},
         {"/frames/1/name", {"../frame", "..", "a/b", "/etc", "a\\b", "", ".hidden", "a b"}, name},
         {"/frames/1/name", {"a\n", "\xC3\xA4"}, name},
-        {"/frames/1/name", {"band_450_550nm"}, "a name that no other frame has"},
+        {"/frames/1/name", {"band_450_550nm"}, "a unique name"},
         // As many as a scene may hold, and one at least.
         {"/strobes/0/lamps_along", {0, -1, 2.5, "5", 100001}, "a whole number from 1 to 100000"},
-        {"/wavelengths/0/lambda_nm", {0}, "increasing wavelengths over 0"},
-        {"/wavelengths/1/lambda_nm", {450.0, -5}, "increasing wavelengths over 0"},
+        {"/wavelengths/0/lambda_nm", {0}, "increasing wavelengths above 0"},
+        {"/wavelengths/1/lambda_nm", {450.0, -5}, "increasing wavelengths above 0"},
         {"/wavelengths/1/lambda_nm", {"550"}, "a number"},
         {"/wavelengths/1/weight", {1.0, {1, 2}, {1, 2, nullptr}}, "three numbers"},
         {"/wavelengths/1/flux", {7}, "a list of numbers"},
@@ -301,9 +302,9 @@ TEST(Manifest, RefusesValuesThatNoManifestHas) {
          "a whole number from -1000 to 1000"},
         {"/wavelengths/1/radiance_bound", {-1e-9}, "0 or more"},
         {"/scene", {7}, "an object"},
-        {"/scene/shortest_path_m", {0.0}, "a number over 0"},
-        {"/scene/longest_path_m", {0.1}, "a number not under shortest_path_m"},
-        {"/scene/materials", {{{"a", 1}}}, "a list of texts"}};
+        {"/scene/shortest_path_m", {0.0}, "a number above 0"},
+        {"/scene/longest_path_m", {0.1}, "a number no smaller than shortest_path_m"},
+        {"/scene/materials", {{{"a", 1}}}, "a list of strings"}};
     const Json scene{{"file", "f"},
                      {"sha256", "s"},
                      {"materials", Json::array()},
@@ -367,7 +368,7 @@ TEST(Manifest, RefusesValuesWithinValuesWithoutEnd) {
         FAIL() << "no error";
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
-                     "manifest.json: found values nested in 1000001 levels; allowed: up to 64");
+                     "manifest.json: found values nested 1000001 deep; allowed: up to 64");
     }
 }
 

@@ -91,7 +91,7 @@ TEST(Glass, IsRefusedWhenUnknown) {
         FAIL();
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
-                     "no built-in glass is called 'sand'; allowed: bk7, fused-silica, pmma, "
+                     "no built-in glass is named 'sand'; allowed: bk7, fused-silica, pmma, "
                      "polycarbonate, sapphire");
     }
 }

@@ -57,7 +57,7 @@ TEST(Spectrum, RefusesKnotsThatAreNotACurve) {
     EXPECT_EQ(message_of([] {
                   Spectrum("a", {400.0, 500.0}, {1.0, kNan});
               }),
-              "a: holds a number that is not finite");
+              "a: found a number that is not finite");
     EXPECT_THROW(Spectrum("a", {400.0, kInfinity}, {1.0, 2.0}), InputError);
 }
 
@@ -82,9 +82,8 @@ TEST(RequireCover, NamesTheCurveTheGapAndTheRemedy) {
     EXPECT_EQ(message_of([&] {
                   require_cover(curves, {380.0, 780.0});
               }),
-              "water absorption 'pope-fry-1997' covers 380 to 727.5 nm, which leaves 727.5 to "
-              "780 nm of the range 380 to 780 nm without a value; range_nm = [380, 727.5] would "
-              "do");
+              "water absorption 'pope-fry-1997' covers 380 to 727.5 nm, which leaves 727.5 to 780 "
+              "nm of the range 380 to 780 nm without a value; range_nm = [380, 727.5] works");
 }
 
 TEST(RequireCover, NamesEveryCurveThatLacksSomething) {
@@ -96,7 +95,7 @@ TEST(RequireCover, NamesEveryCurveThatLacksSomething) {
               }),
               "a covers 400 to 700 nm, which leaves 350 to 400 nm and 700 to 740 nm of the range "
               "350 to 740 nm without a value; b covers 360 to 750 nm, which leaves 350 to 360 nm "
-              "of the range 350 to 740 nm without a value; range_nm = [400, 700] would do");
+              "of the range 350 to 740 nm without a value; range_nm = [400, 700] works");
 }
 
 TEST(RequireCover, SaysWhenNoRangeWouldDo) {
@@ -107,7 +106,7 @@ TEST(RequireCover, SaysWhenNoRangeWouldDo) {
                   require_cover(curves, {300.0, 400.0});
               }),
               "b covers 500 to 600 nm, which leaves all of the range 300 to 400 nm without a "
-              "value; no range_nm would do, for these curves have no wavelengths in common");
+              "value; no range_nm works, since these curves have no wavelengths in common");
 }
 
 TEST(RequireCover, SuggestsTheCoveredRangeWhenTheAskedOneIsElsewhere) {
@@ -117,7 +116,7 @@ TEST(RequireCover, SuggestsTheCoveredRangeWhenTheAskedOneIsElsewhere) {
                   require_cover(curves, {900.0, 1000.0});
               }),
               "a covers 400 to 700 nm, which leaves all of the range 900 to 1000 nm without a "
-              "value; range_nm = [400, 700] would do");
+              "value; range_nm = [400, 700] works");
 }
 
 TEST(RequireCover, RefusesAnEmptyRange) {

@@ -127,7 +127,7 @@ TEST(ParseSplines, TakesOnlyWhatFits) {
     EXPECT_EQ(file.spectra[1].identifier, "D_B");
     EXPECT_EQ(message_of([&] { static_cast<void>(parse_splines("a.inc", text, "X*")); }),
               "a.inc: found no spectrum; allowed: #declare NAME = spline { ... } or #declare NAME "
-              "= array[36] { ... }, with a NAME that fits 'X*'");
+              "= array[36] { ... }, with a NAME that matches 'X*'");
 }
 
 TEST(ParseSplines, NotesSplinesWithoutAName) {
@@ -164,7 +164,7 @@ TEST(ParseSplines, RefusesWavelengthsThatAreNotNanometres) {
 // POV-Ray would take the second in the first one's place.
 TEST(ParseSplines, RefusesAWavelengthTwice) {
     EXPECT_EQ(body_error("400, 0.1\n500, 0.2\n\n400.0, 0.1"),
-              "a.inc:4: D_A: found the wavelength 400 again, first in line 1; allowed: once");
+              "a.inc:4: D_A: found a duplicate wavelength 400, first on line 1; allowed: once");
 }
 
 TEST(ParseSplines, RefusesWhatOnlyPovRayCanCompute) {
@@ -198,13 +198,15 @@ TEST(ParseSplines, RefusesFewerThanTwoKnots) {
 TEST(ParseSplines, RefusesTwoSpectraForOneTable) {
     EXPECT_EQ(error_of("#declare D_A = spline { 400, 0 500, 1 }\n"
                        "#declare d_a = spline { 400, 0 500, 1 }"),
-              "a.inc:2: d_a: found a second spectrum for d-a.csv, the first is D_A in line 1; "
+              "a.inc:2: d_a: found a second spectrum for d-a.csv, the first is D_A on line 1; "
               "allowed: one");
 }
 
 TEST(ParseSplines, RefusesWhatNeverEnds) {
-    EXPECT_EQ(error_of("\n/* /* */ spline"), "a.inc:2: the comment that begins here never ends");
-    EXPECT_EQ(error_of("\n#debug \"spline\\\""), "a.inc:2: the text that begins here never ends");
+    EXPECT_EQ(error_of("\n/* /* */ spline"),
+              "a.inc:2: the comment that begins here is not terminated");
+    EXPECT_EQ(error_of("\n#debug \"spline\\\""),
+              "a.inc:2: the text that begins here is not terminated");
 }
 
 TEST(SplineTableName, IsLowerCaseWithDashes) {
@@ -222,7 +224,7 @@ TEST(SplineTable, IsATableThatSaysWhereItComesFrom) {
               "# obtained: the knots of a linear_spline\n"
               "wavelength_nm,reflectance\n380,0.021\n400,0.03\n730,0.5\n");
     const std::string mud = spline_table("things.inc", file.spectra[1], CurveRole::LampSpectrum);
-    EXPECT_NE(mud.find("natural_spline, here joined by straight lines"), std::string::npos) << mud;
+    EXPECT_NE(mud.find("natural_spline, joined here by straight lines"), std::string::npos) << mud;
     const Table table = parse_table("mud.csv", mud);
     EXPECT_EQ(curves_of(table, CurveRole::LampSpectrum)[0].at(390.0), 0.15000000000000002);
 }

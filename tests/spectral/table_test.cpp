@@ -85,7 +85,7 @@ TEST(ParseTable, RefusesAMissingOrBrokenHeader) {
               "t.csv:2: found '400' where a header row such as wavelength_nm,reflectance is "
               "expected");
     EXPECT_EQ(parse_error("wavelength_nm,\n"), "t.csv:1: found a column without a name");
-    EXPECT_EQ(parse_error("wavelength_nm,red,red\n"), "t.csv:1: the column 'red' stands twice");
+    EXPECT_EQ(parse_error("wavelength_nm,red,red\n"), "t.csv:1: duplicate column 'red'");
 }
 
 TEST(ParseTable, RefusesATableWithoutRows) {
@@ -200,10 +200,9 @@ TEST(CurvesOf, RefusesDaylightsAttenuation) {
 TEST(CurvesOf, RefusesWavelengthsThatDoNotIncrease) {
     EXPECT_EQ(
         curve_error("wavelength_nm,reflectance\n400,0.1\n\n400,0.2\n", CurveRole::Reflectance),
-        "t.csv:4: wavelength_nm: found 400; allowed: above 400, for wavelengths must "
-        "increase");
+        "t.csv:4: wavelength_nm: found 400; allowed: above 400, since wavelengths must increase");
     EXPECT_EQ(curve_error("wavelength_nm,reflectance\n0,0.1\n400,0.2\n", CurveRole::Reflectance),
-              "t.csv:2: wavelength_nm: found 0; allowed: above 0, for wavelengths must increase");
+              "t.csv:2: wavelength_nm: found 0; allowed: above 0, since wavelengths must increase");
 }
 
 TEST(CurvesOf, RefusesValuesThatTheRoleCannotHave) {

@@ -355,7 +355,7 @@ TEST(Correction, WhatCannotBeCorrectedIsRefused) {
     EXPECT_EQ(fault_of(raw, plain()), "the image is nan at sample 2, 1; allowed: finite numbers");
     raw.width_px = kHeight;
     raw.height_px = kWidth;
-    EXPECT_EQ(fault_of(raw, plain()), "found 21 x 33 pixels; allowed: 33 x 21, as the map has");
+    EXPECT_EQ(fault_of(raw, plain()), "found 21 x 33 pixels; allowed: 33 x 21, like the map");
 }
 
 // Half of the pixels reflect less than the middle and half more; extremes do not move it.

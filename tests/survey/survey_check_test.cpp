@@ -92,7 +92,7 @@ TEST(SurveyCheck, ImagesOfOneAltitudeLookRight) {
         look.quotient = {731.3, 997.1, 1013.7};
         const std::vector<ImageLook> looks(16, look);
         EXPECT_EQ(told_of(looks), kNothing) << altitude_m;
-        EXPECT_TRUE(has(not_checked(looks), "16 images, all of one altitude"));
+        EXPECT_TRUE(has(not_checked(looks), "16 images, all at one altitude"));
     }
     constexpr double kAltimeter_m = 0.02;
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
@@ -174,7 +174,7 @@ TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
         EXPECT_EQ(told_of(changed(seed), Mosaic::Bggr), kBayer) << seed;
     }
-    EXPECT_TRUE(has(suspicions(changed(1), Mosaic::Bggr)[0].what, "--bayer RGGB puts them right"));
+    EXPECT_TRUE(has(suspicions(changed(1), Mosaic::Bggr)[0].what, "--bayer RGGB corrects this"));
 }
 
 // Poses of other images turn brightness and colours alike, and no pattern puts them right.
@@ -523,7 +523,7 @@ TEST(SurveyCheck, AltitudesInAnotherUnitThanTheRigsAreTold) {
     EXPECT_TRUE(has(told(1000.0, 2.0), "if they are in millimetres"));
     EXPECT_TRUE(has(told(100.0, 2.0), "if they are in centimetres"));
     EXPECT_TRUE(has(told(27.0, 2.0), "another column"));
-    EXPECT_TRUE(has(told(1.0, 40.0), "another column, or rig?"));
+    EXPECT_TRUE(has(told(1.0, 40.0), "another column or rig?"));
 }
 
 // Exposures of 8, 4, 2 and 1 ms that need factors of 1, 1.14, 1.4 and 2: levels go as their cube
@@ -532,16 +532,15 @@ TEST(SurveyCheck, ExposuresThatLevelsDoNotFollowAreTold) {
     std::vector<ImageLook> looks(16);
     for (std::size_t i = 0; i < looks.size(); ++i) {
         constexpr std::array kFactors{1.0, 1.14, 1.4, 2.0};
-        looks[i].told = 8.0 / static_cast<double>(1U << i % 4);
+        looks[i].stated_exposure = 8.0 / static_cast<double>(1U << i % 4);
         looks[i].level = -std::log(kFactors.at(i % 4));
     }
     const auto doubt = exposure_doubt(looks);
     ASSERT_TRUE(doubt.has_value());
-    EXPECT_TRUE(
-        has(doubt->what, "vary 8-fold, where the images' own levels go as their power 0.3"));
-    for (ImageLook& look : looks) look.level = std::log(*look.told);
+    EXPECT_TRUE(has(doubt->what, "vary 8-fold, but the images' levels go as their power 0.3"));
+    for (ImageLook& look : looks) look.level = std::log(*look.stated_exposure);
     EXPECT_FALSE(exposure_doubt(looks).has_value());
-    for (ImageLook& look : looks) look.told.reset();
+    for (ImageLook& look : looks) look.stated_exposure.reset();
     EXPECT_FALSE(exposure_doubt(looks).has_value());
 }
 

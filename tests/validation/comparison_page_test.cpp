@@ -105,7 +105,7 @@ TEST(ComparisonPage, ListsChannelsWithoutAPartner) {
     EXPECT_TRUE(contains(words, "But 3 channels without a partner")) << words;
     EXPECT_TRUE(contains(words, "S0.470,000000nm")) << words;
     EXPECT_TRUE(contains(words, "S0.450,000000nm, &lt;X&gt;")) << words;
-    EXPECT_TRUE(contains(words, "Left asideA")) << words;
+    EXPECT_TRUE(contains(words, "Not comparedA")) << words;
 }
 
 TEST(ComparisonPage, SaysNoWhenOneChannelIsOut) {

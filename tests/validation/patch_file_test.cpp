@@ -50,15 +50,15 @@ TEST(PatchFile, NamesTheLineOfAFault) {
     EXPECT_EQ(
         fault_of("patch,x,y,w\n"),
         "p.csv:1: found the columns patch, x, y, w; allowed: patch, x, y, w, h and reference");
-    EXPECT_EQ(fault_of("patch,x,x,y,w,h\n"), "p.csv:1: the column 'x' stands twice");
-    EXPECT_EQ(fault_of(header), "p.csv:2: the file ends without a line of a patch");
+    EXPECT_EQ(fault_of("patch,x,x,y,w,h\n"), "p.csv:1: duplicate column 'x'");
+    EXPECT_EQ(fault_of(header), "p.csv:2: the file ends without a patch");
     EXPECT_EQ(fault_of(header + "a,-1,0,1,1,\n"),
               "p.csv:2: x: found '-1'; allowed: whole pixels, 0 or more");
     EXPECT_EQ(fault_of(header + "a,0,0,0,1,\n"),
               "p.csv:2: w: found '0'; allowed: whole pixels, 1 or more");
     EXPECT_EQ(fault_of(header + "a,0,0,1\n"),
               "p.csv:2: h: found ''; allowed: whole pixels, 1 or more");
-    EXPECT_EQ(fault_of(header + ",0,0,1,1,\n"), "p.csv:2: patch: found no name; allowed: any");
+    EXPECT_EQ(fault_of(header + ",0,0,1,1,\n"), "p.csv:2: patch: found no name; allowed: any name");
     for (const char* wrong : {"1.2", "0", "50 0", "101 0 0", "nan", "light-skn"}) {
         EXPECT_EQ(
             fault_of(header + "a,0,0,1,1," + wrong + "\n").find("p.csv:2: reference: found '"), 0U)

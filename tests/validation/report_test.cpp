@@ -196,7 +196,7 @@ TEST(ReportPage, HasEverySection) {
     const std::string words = words_of(page);
     for (const char* part : {"HabCam, 2 m above sand",
                              "pitch_deg  = 5.0",
-                             "1.2° × 0.9°, or some 0.043 m × 0.032 m of a level floor",
+                             "1.2° × 0.9°, or about 0.043 m × 0.032 m of a level floor",
                              "Relative error of channel R, the worst",
                              "Row 15",
                              "Column 20",
@@ -252,8 +252,8 @@ TEST(ReportPage, ShowsTheRigAsItWasReadAndItsFiles) {
     EXPECT_FALSE(contains(words_of(page), "in the water"));
     report.rig.camera.port = PortWindow{.glass = builtin_glass("bk7")};
     EXPECT_TRUE(contains(words_of(page_of(report)),
-                         "1.2° × 0.9° in air, 0.9° × 0.7° in the water (at 560 nm), or some "
-                         "0.032 m × 0.024 m of a level floor"));
+                         "1.2° × 0.9° in air, 0.9° × 0.7° in the water (at 560 nm), or about 0.032 "
+                         "m × 0.024 m of a level floor"));
 }
 
 TEST(ReportPage, SaysWhichSceneTheReferenceDoesNotRead) {
@@ -271,11 +271,11 @@ TEST(ReportPage, SaysHowManyPixelsHaveNoBoundAndHowFarTheyAreOff) {
     report.channels[1].max_error_of_penumbrae = 0.5;
     const std::string words = words_of(page_of(report));
     EXPECT_TRUE(contains(words,
-                         "On edges, which have no bound, are up to 0.833 % of the pixels; the "
+                         "Up to 0.833 % of the pixels are on edges, which have no bound; the "
                          "largest relative error there is 0.250."))
         << words;
-    EXPECT_TRUE(contains(words, "In the penumbrae of emitters are 25.0 %")) << words;
-    EXPECT_TRUE(contains(words, "they differ by up to 0.500.")) << words;
+    EXPECT_TRUE(contains(words, "25.0 % are in the penumbrae of emitters")) << words;
+    EXPECT_TRUE(contains(words, "differs by up to 0.500.")) << words;
     for (std::vector<Comparison>* comparisons : {&report.wavelengths, &report.channels}) {
         for (Comparison& one : *comparisons) one.on_edges = 0;
     }

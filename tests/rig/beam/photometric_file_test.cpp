@@ -180,13 +180,12 @@ TEST(IesFile, RefusesALampWhoseLightChangesAsItIsTilted) {
     const std::string rest = "1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n1 2\n";
     expect_near(parse("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n1 1.0\n" + rest).table.intensity,
                 {1, 2});
-    EXPECT_EQ(
-        error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n1 .87\n" + rest),
-        "a.ies:6: the factor of a tilt (TILT): found 0.87; allowed: 1, for a lamp whose light "
-        "changes as it is tilted is not modelled");
+    EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n1 .87\n" + rest),
+              "a.ies:6: the factor of a tilt (TILT): found 0.87; allowed: 1; lamps whose light "
+              "changes with tilt are not modelled");
     EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=b.tlt\n" + rest),
-              "a.ies:2: found TILT='b.tlt', a table of how the lamp's light changes as it is "
-              "tilted; allowed: TILT=NONE, or INCLUDE with factors of 1");
+              "a.ies:2: found TILT='b.tlt', a table of the lamp's light over tilt; allowed: "
+              "TILT=NONE, or INCLUDE with factors of 1");
 }
 
 TEST(IesFile, ReadsAWholeTurnCounterclockwise) {
@@ -240,8 +239,8 @@ TEST(EulumdatFile, RefusesAChoiceOfLamps) {
     const std::string name = "eulumdat-two-sets.ldt";
     EXPECT_EQ(error_of(name, read_text_file(sample(name))),
               name +
-                  ":26: sets of lamps: found 2; allowed: 1; of several, leave in the one that is "
-                  "fitted, for intensities are per 1000 lm of it");
+                  ":26: sets of lamps: found 2; allowed: 1; of several, keep the one that is "
+                  "installed, since intensities are per 1000 lm of it");
 }
 
 // A file of one line for each item, with four planes a quarter turn apart unless said.
@@ -270,14 +269,14 @@ TEST(EulumdatFile, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("a.ldt", eulumdat(3, "6", four)),
               "a.ldt:4: Mc, the number of C planes: found 6; allowed with Isym 3: multiples of 4");
     EXPECT_EQ(error_of("a.ldt", eulumdat(3, "4", "0\n80\n180\n270\n0\n90\n")),
-              "a.ldt:44: a C angle: found 80; allowed: 90 degrees in this place, by Isym and Mc");
+              "a.ldt:44: a C angle: found 80; allowed: 90 degrees here, by Isym and Mc");
     EXPECT_EQ(error_of("a.ldt", eulumdat(4, "4", four + "9\n1\n9\n-2\n")),
               "a.ldt:52: an intensity: found -2; allowed: 0 or more");
     EXPECT_EQ(error_of("a.ldt", eulumdat(4, "4", four + "9\n1\n9\n")),
               "a.ldt:52: the file ends where an intensity should be");
     EXPECT_EQ(error_of("a.ldt", eulumdat(4, "4", four + "9\n1\n9\n2\n3\n")),
               "a.ldt:53: found '3' after the last intensity; allowed: as many as Isym, Mc and Ng "
-              "ask for");
+              "require");
     EXPECT_EQ(error_of("a.ldt", "m\n1\nx\n"),
               "a.ldt:3: Isym, the symmetry: found 'x'; allowed: a finite number");
 }
@@ -308,17 +307,16 @@ TEST(BeamCsv, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("a.csv", round + "0,1\n"),
               "a.csv:2: theta_deg: found 0; allowed: two or more");
     EXPECT_EQ(error_of("a.csv", round + "0,1\n10,1\n0,2\n"),
-              "a.csv:4: found a second row of theta_deg 0; allowed: one, as in line 2");
+              "a.csv:4: found a second row of theta_deg 0, first on line 2; allowed: one");
     EXPECT_EQ(error_of("a.csv", turn + "0,0,1\n10,0,1\n0,180,1\n"),
-              "a.csv:4: found no row of theta_deg 10, phi_deg 180; allowed: one for each theta_deg "
-              "and each phi_deg");
+              "a.csv:4: found no row for theta_deg 10, phi_deg 180; allowed: one for each "
+              "theta_deg and phi_deg");
     EXPECT_EQ(error_of("a.csv", turn + "0,0,1\n9,0,1\n0,90,1\n9,90,1\n"),
-              "a.csv:4: phi_deg: found 0 to 90; allowed: 0 to 360, of which 360 may be missing "
-              "after even steps, or 0 alone");
-    EXPECT_EQ(
-        error_of("a.csv", turn + "0,0,1\n9,0,1\n0,360,1\n9,360,2\n"),
-        "a.csv:4: found other intensities at phi_deg 360 than at 0; allowed: the same, for it "
-        "is one direction");
+              "a.csv:4: phi_deg: found 0 to 90; allowed: 0 to 360 (360 may be omitted where steps "
+              "are even), or 0 alone");
+    EXPECT_EQ(error_of("a.csv", turn + "0,0,1\n9,0,1\n0,360,1\n9,360,2\n"),
+              "a.csv:4: found intensities at phi_deg 360 that differ from those at 0; allowed: the "
+              "same, since it is one direction");
 }
 
 TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
@@ -332,21 +330,19 @@ TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
               "a.ies:8: candela: found 'nan'; allowed: a finite number");
     EXPECT_EQ(error(numbers + "0 90\n0\n1 -2\n"), "a.ies:8: candela: found -2; allowed: 0 or more");
     EXPECT_EQ(error(numbers + "0 90\n0\n1\n"), "a.ies:9: the file ends where candela should be");
-    EXPECT_EQ(
-        error(numbers + "0 90\n0\n1 2\n\n3\n"),
-        "a.ies:10: found '3' after the last number; allowed: as many numbers as the counts of "
-        "angles ask for");
+    EXPECT_EQ(error(numbers + "0 90\n0\n1 2\n\n3\n"),
+              "a.ies:10: found '3' after the last number; allowed: as many numbers as the counts "
+              "of angles require");
     EXPECT_EQ(error(numbers + "0 0\n0\n1 2\n"),
-              "a.ies:6: a vertical angle: found 0; allowed: angles that rise, here 1e-06 or more");
+              "a.ies:6: a vertical angle: found 0; allowed: increasing angles, here 1e-06 or more");
     EXPECT_EQ(error(numbers + "0 200\n0\n1 2\n"),
               "a.ies:6: a vertical angle: found 200; allowed: 0 to 180 degrees");
     EXPECT_EQ(error(numbers + "0 90\n30\n1 2\n"),
               "a.ies:7: horizontal angles: found 30 to 30 degrees; allowed for type C: 0 alone, 0 "
-              "to 90, 0 to 180, 90 to 270, or 0 to 360, of which 360 may be missing after even "
-              "steps");
+              "to 90, 0 to 180, 90 to 270, or 0 to 360 (360 may be omitted where steps are even)");
     EXPECT_EQ(error("1 1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 360\n1 2 1 3\n"),
-              "a.ies:7: found other candela at 360 degrees than at 0; allowed: the same, for it is "
-              "one plane");
+              "a.ies:7: found candela at 360 degrees that differ from those at 0; allowed: the "
+              "same, since it is one plane");
     EXPECT_EQ(error("0 1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
               "a.ies:4: the number of lamps: found 0; allowed: a whole number from 1 to 1000000");
     EXPECT_EQ(error("1 -2 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
@@ -372,8 +368,7 @@ TEST(PhotometricFile, IsKnownByTheEndingOfItsName) {
     EXPECT_TRUE(is_photometric_file_name("a.csv"));
     EXPECT_FALSE(is_photometric_file_name("ies"));
     EXPECT_EQ(error_of("lamp.txt", ""),
-              "lamp.txt: found a name that ends otherwise; allowed for a measured beam: .ies, .ldt "
-              "or .csv");
+              "lamp.txt: found another file type; allowed for a measured beam: .ies, .ldt or .csv");
 }
 
 // Angles with as many digits as a goniometer or a program may give, and any values.
@@ -480,8 +475,8 @@ TEST(PhotometricFile, HasItsShapeAtAnyScale) {
 
 TEST(PhotometricFile, RefusesAScaleThatDoublesDoNotHold) {
     EXPECT_EQ(error_of("a.csv", "theta_deg,intensity\n0,1e-320\n45,1e-320\n90,0\n"),
-              "a.csv: found no intensity above 1e-320, by the file's own factors; allowed: a "
-              "largest one of 2.23e-308 or more, for doubles lose digits below");
+              "a.csv: found no intensity above 1e-320 after the file's factors; allowed: a largest "
+              "one of 2.23e-308 or more, since doubles lose digits below");
     const auto ies = [](const std::string& multiplier, const std::string& factors) {
         return error_of("a.ies",
                         fmt::format("IESNA:LM-63-1995\nTILT=NONE\n1 1000 {} 3 1 1 2 0 0 0\n{} 1\n"
@@ -489,10 +484,9 @@ TEST(PhotometricFile, RefusesAScaleThatDoublesDoNotHold) {
                                     multiplier,
                                     factors));
     };
-    EXPECT_EQ(
-        ies("1e308", "1 1"),
-        "a.ies:7: candela: found 3; allowed: up to 1.8, for the file's factors multiply it by "
-        "1e+308");
+    EXPECT_EQ(ies("1e308", "1 1"),
+              "a.ies:7: candela: found 3; allowed: up to 1.8, since the file's factors multiply it "
+              "by 1e+308");
     EXPECT_EQ(ies("1e200", "1e200 1"),
               "a.ies:4: a factor of all intensities: found 1e+200; allowed: one whose product with "
               "the others, 1e+200, is from 2.23e-308 to 1.8e+308");
@@ -530,7 +524,7 @@ TEST(PhotometricFile, RefusesToWriteWhatAFormatCannotSay) {
     half.horizontal_rad = {0.0, 0.5, 1.0};
     EXPECT_EQ(error(half, "b.ies"),
               "b.ies: found a table of type A or B that begins at 0; allowed in .ies: one that "
-              "begins below 0, for what begins there is half of a symmetric one");
+              "begins below 0, since one that begins at 0 is half of a symmetric table");
     BeamTable dark = read_sample("eulumdat-absolute.ldt").table;
     std::ranges::fill(dark.intensity, 0.0);
     EXPECT_EQ(error(dark, "c.ldt"),

@@ -32,7 +32,7 @@ TEST(CalibrationDoubts, APrincipalPointFarFromTheMiddleIsSaid) {
     const std::string found = "principal point: found ";
     const std::string usual = " in an image of 4000 x 3000; usual: near the middle, 2000, 1500; ";
     const std::string unset =
-        "is it given from the middle, as a share of the image, or not at all?";
+        "is it relative to the middle, a fraction of the image's size, or missing?";
     EXPECT_EQ(doubts(lens(3000.0, 0.0, 0.0)), std::vector{found + "0, 0" + usual + unset});
     EXPECT_EQ(doubts(lens(3000.0, 0.5, 0.5)), std::vector{found + "0.5, 0.5" + usual + unset});
     const std::string scaled = "are the calibration and the images of the same size?";
@@ -44,7 +44,7 @@ TEST(CalibrationDoubts, APrincipalPointFarFromTheMiddleIsSaid) {
 TEST(CalibrationDoubts, FocalLengthsThatNoCameraHasAreSaid) {
     EXPECT_EQ(doubts(lens(35.0, 2000.0, 1500.0)),
               std::vector<std::string>{
-                  "focal length: found 35 pixels, which make a field of 178 degrees across 4000 "
+                  "focal length: found 35 pixels, a field of view of 178 degrees across 4000 "
                   "pixels; usual: 2 to 150 degrees; is it in millimetres?"});
     EXPECT_EQ(doubts(lens(3e6, 2000.0, 1500.0)).size(), 1U);
     LensModel askew = lens(3000.0, 2000.0, 1500.0);

@@ -486,9 +486,9 @@ TEST(CalibrationFile, TellsWhatIsWrongWithOpenCvs) {
          "cam:12: distortion_coefficients.data: found a thin prism or a tilted sensor; allowed: 0 "
          "for the coefficients after the eighth"},
         {with(kCameraInfo, "camera_name: narrow_stereo", "fisheye_model: 1"),
-         "cam:3: fisheye_model: found beside distortion_model; allowed: one of them"},
+         "cam:3: fisheye_model: found together with distortion_model; allowed: one of them"},
         {with(kCameraInfo, "camera_name: narrow_stereo", "Image_Width: 640"),
-         "cam:3: image_width: found a second time; allowed: once"},
+         "cam:3: image_width: duplicate key; allowed: once"},
         {with(kCameraInfo, "distortion_coefficients:", "distortion:"),
          "cam:1: distortion_coefficients: is missing; allowed: keys and values"},
         {with(kFileStorageXml, "405.25", "1e400"),
@@ -507,9 +507,9 @@ TEST(CalibrationFile, TellsWhatIsWrongWithKalibrs) {
         {with(kCamchain, "[800, 600]", "[800, -600]"),
          "cam:7: cam0.resolution: found -600; allowed: whole numbers from 1 to 16384"},
         {with(kCamchain, "[700, 690, 405.25, 290.5]", "[700, [690], 405.25, 290.5]"),
-         "cam:6: cam0.intrinsics: found lists within a list; allowed: numbers"},
+         "cam:6: cam0.intrinsics: found nested lists; allowed: numbers"},
         {std::string(kCamchain) + "cam1:\n  camera_model: pinhole\n",
-         "cam:13: cam1: found beside cam0; allowed: one camera, that of the rig"},
+         "cam:13: cam1: found together with cam0; allowed: one camera, that of the rig"},
     });
 }
 
@@ -553,7 +553,7 @@ TEST(CalibrationFile, TellsWhatIsWrongWithMetashapes) {
         {"<document version=\"2.0.0\">\n</document>\n",
          "cam:1: found the element 'document'; allowed: calibration (Metashape) or opencv_storage "
          "(OpenCV)"},
-        {with(kMetashape, "</calibration>", ""), "cam:15: is not XML: Start-end tags mismatch"},
+        {with(kMetashape, "</calibration>", ""), "cam:15: not valid XML: Start-end tags mismatch"},
     });
 }
 
@@ -570,7 +570,7 @@ TEST(CalibrationFile, RefusesWhatIsNoCalibration) {
          "parameters (calibmar), <calibration> (Metashape), or lines of COLMAP's cameras.txt"},
         {std::string(kCameraInfo) + "---\n" + std::string(kCameraInfo),
          "cam:17: found a second document; allowed: one"},
-        {"a: [1, 2\nb: 3\n", "cam:2: is not YAML: end of sequence flow not found"},
+        {"a: [1, 2\nb: 3\n", "cam:2: not valid YAML: end of sequence flow not found"},
     });
 }
 
@@ -589,7 +589,7 @@ TEST(CalibrationFile, ColmapsBinaryIsRefusedByNameAndTheWayOutTold) {
     for (int i = 0; i < 4; ++i) add(0x40A7700000000000U, 8);  // 3000.0
     EXPECT_EQ(error_of(bytes),
               "cam: found COLMAP's cameras.bin, which is binary; allowed: its cameras.txt, which "
-              "COLMAP makes of it: colmap model_converter --input_path MODEL --output_path TEXT "
+              "COLMAP writes with: colmap model_converter --input_path MODEL --output_path TEXT "
               "--output_type TXT");
 }
 
@@ -605,7 +605,7 @@ TEST(CalibrationFile, WhatIsNoTextIsSaidByName) {
           {"\x80\x04\x95"sv, "a pickle of Python"},
           {"\xFF\xD8\xFF\xE0"sv, "a JPEG image"},
           {"\xFF\xFE<\0"sv, "text in UTF-16"},
-          {"a\0b"sv, "zero bytes, which no text has"}})
+          {"a\0b"sv, "zero bytes"}})
         EXPECT_EQ(error_of(bytes), fmt::format("cam: found {}{}", kind, allowed));
 }
 
@@ -615,17 +615,17 @@ TEST(CalibrationFile, RefusesValuesWithinValuesWithoutEnd) {
     std::string lists = "camera_matrix: ";
     for (int i = 0; i < 100; ++i) lists += '[';
     for (int i = 0; i < 100; ++i) lists += ']';
-    EXPECT_EQ(error_of(lists), "cam:1: found values in more than 16 levels; allowed: fewer");
+    EXPECT_EQ(error_of(lists), "cam:1: found values nested more than 16 deep; allowed: less");
     std::string elements = "<calibration>";
     for (int i = 0; i < 100; ++i) elements += "<a>";
     for (int i = 0; i < 100; ++i) elements += "</a>";
     EXPECT_EQ(error_of(elements + "</calibration>"),
-              "cam:1: found values in more than 16 levels; allowed: fewer");
+              "cam:1: found values nested more than 16 deep; allowed: less");
     for (const char open : {'[', '{'}) {
         EXPECT_EQ(error_of(std::string(1'000'000, open)),
-                  "cam:1: found values in more than 16 levels; allowed: fewer");
+                  "cam:1: found values nested more than 16 deep; allowed: less");
     }
-    EXPECT_TRUE(error_of(std::string(1'000'000, '<')).starts_with("cam:1: is not XML: "));
+    EXPECT_TRUE(error_of(std::string(1'000'000, '<')).starts_with("cam:1: not valid XML: "));
 }
 
 // Nine lists of nine of the list before are 9^9 values.
@@ -635,7 +635,7 @@ TEST(CalibrationFile, RefusesAliasesOfAliases) {
         bomb += fmt::format("a{}: &a{} [", i, i);
         for (int k = 0; k < 9; ++k) bomb += fmt::format("*a{}{}", i - 1, k < 8 ? ", " : "]\n");
     }
-    EXPECT_EQ(error_of(bomb), "cam:2: found an alias; allowed: values themselves");
+    EXPECT_EQ(error_of(bomb), "cam:2: found an alias; allowed: plain values");
 }
 
 // Of which yaml-cpp makes documents without end.

@@ -94,7 +94,7 @@ TEST(LensModel, EndsWhereTheImageNoLongerGrows) {
         require_to_hold(lens, 400, 300);
         FAIL() << "no refusal";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("holds to 45.00 degrees"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("valid to 45.00 degrees"), std::string::npos)
             << error.what();
     }
 }

@@ -83,7 +83,7 @@ TEST(Vignetting, TablesThatCannotBeAreRefused) {
     EXPECT_EQ(fault_in("angle_deg,factor\n0,1\n2,1\n2,1\n"),
               "v.csv:4: angle_deg: found 2; allowed: from 0, increasing");
     EXPECT_EQ(fault_in("angle_deg,factor\n0,1\n2,0\n"),
-              "v.csv:3: factor: found 0; allowed: over 0");
+              "v.csv:3: factor: found 0; allowed: above 0");
     EXPECT_EQ(fault_in("angle_deg,factor\n0,1\n"), "v.csv:1: found 1 rows; allowed: 2 or more");
 }
 

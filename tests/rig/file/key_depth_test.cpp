@@ -19,8 +19,8 @@ std::string error_of(const std::string& toml) {
 
 std::string refusal(int line) {
     return fmt::format(
-        "rig.toml:{0}: found a key of more than {1} parts with dots between them; allowed: up to "
-        "{1}",
+        "rig.toml:{0}: found a dotted key of more than {1} parts; allowed: "
+        "up to {1}",
         line,
         kMostKeyParts);
 }

@@ -82,7 +82,7 @@ TEST(MeshReader, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("v 0 0\n"), "rock.obj:1: found v 0 0; allowed: v and three finite numbers");
     EXPECT_EQ(error_of("v 0 0 1,5\n"),
               "rock.obj:1: found v 0 0 1,5; allowed: v and three finite numbers");
-    const std::string allowed = "; allowed: f and from 3 to 256 of the 3 vertices above it";
+    const std::string allowed = "; allowed: f and 3 to 256 of the 3 vertices above it";
     for (const std::string face : {"f 1 2", "f 1 2 4", "f 0 1 2", "f 1 2 -4", "f 1 2 x", "f"}) {
         EXPECT_EQ(error_of(triangle_and(face + "\n")), "rock.obj:4: found " + face + allowed);
     }
@@ -92,8 +92,8 @@ TEST(MeshReader, RefusesWhatIsNoMesh) {
     EXPECT_EQ(error_of(""), "rock.obj: found no faces; allowed: 1 to 1000000 triangles");
     EXPECT_EQ(error_of(kTriangle), "rock.obj: found no faces; allowed: 1 to 1000000 triangles");
     const std::string flat =
-        "rock.obj: found a triangle without area, of the vertices 1, 2 and 3, counted from 1; "
-        "allowed: three corners that do not lie on one line";
+        "rock.obj: found a triangle without area, with vertices 1, 2 and 3 (counted from 1); "
+        "allowed: three corners not on one line";
     EXPECT_EQ(error_of("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n"), flat);
     EXPECT_EQ(error_of("v 0 0 0\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), flat);
 }
@@ -121,7 +121,7 @@ TEST(MeshReader, RefusesPolygonsOfMoreCornersThanItsLimit) {
               kMostCorners - 2);
     EXPECT_TRUE(error_of(polygon(kMostCorners + 1)).starts_with("rock.obj:258: found f 1 2 3 4 "));
     EXPECT_TRUE(error_of(polygon(kMostCorners + 1))
-                    .ends_with(" ...; allowed: f and from 3 to 256 of the 257 vertices above it"));
+                    .ends_with(" ...; allowed: f and 3 to 256 of the 257 vertices above it"));
 }
 
 // By the shoelace formula; corners on one line, a corner twice.
@@ -169,7 +169,7 @@ TEST(MeshReader, CutsQuadrilateralsAlongTheShorterDiagonal) {
 TEST(MeshReader, LeavesNoHoleWhereAPolygonCannotBeCut) {
     const std::string error =
         ": found a polygon that cannot be cut into triangles from one of its corners; allowed: one "
-        "with a corner that sees all others, or triangles in its place";
+        "with a corner that sees all others, or triangles instead";
     EXPECT_EQ(error_of("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n"), "rock.obj:5" + error);
     EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n"), "rock.obj:5" + error);
     EXPECT_EQ(error_of("v 0 0 0\nv 9 0 0\nv 8 4 0\nv 7 1 0\nv 5 1 0\nv 4 4 0\nv 3 1 0\n"

@@ -381,7 +381,7 @@ TEST(RigReader, RangeThatSeveralTablesDoNotCoverNamesThemAll) {
     for (const char* part : {"water absorption 'pope-fry-1997' covers 380 to 727.5 nm",
                              "lamp spectrum 'xenon-flash' covers 380 to 780 nm",
                              "sensor response 'nikon-d5100' (red) covers 380 to 780 nm",
-                             "range_nm = [380, 727.5] would do"}) {
+                             "range_nm = [380, 727.5] works"}) {
         EXPECT_NE(both.find(part), std::string::npos) << part << "\nin " << both;
     }
 }
@@ -581,7 +581,7 @@ TEST(RigReader, RefusesMoreConesOfAllStrobesThanItsLimit) {
     }
     // With the rig's own strobe, the 101st.
     EXPECT_EQ(error_of(with(12, "cones = [" + cones + "]") + strobes),
-              "rig.toml:517: strobe[100].beam: found 'wide'; allowed: up to 100000 cones of all "
+              "rig.toml:517: strobe[100].beam: found 'wide'; allowed: up to 100000 cones in all "
               "strobes together");
 }
 
@@ -601,8 +601,7 @@ TEST(RigReader, TakesAsManyOfAKindAsItsLimit) {
 TEST(RigReader, RefusesTablesWithinTablesWithoutEnd) {
     std::string key = "a";
     for (int i = 1; i < 50'000; ++i) key += ".a";
-    const std::string refusal =
-        ": found a key of more than 16 parts with dots between them; allowed: up to 16";
+    const std::string refusal = ": found a dotted key of more than 16 parts; allowed: up to 16";
     EXPECT_EQ(error_of("\n" + key + " = 1\n"), "rig.toml:2" + refusal);
     EXPECT_EQ(error_of("[" + key + "]\n"), "rig.toml:1" + refusal);
 }
@@ -861,7 +860,8 @@ TEST(RigReader, RefusesControlCharactersInEveryText) {
         for (const auto& [rig, place] : rigs) {
             const std::string message = error_of(rig);
             EXPECT_TRUE(message.starts_with(place)) << message;
-            EXPECT_NE(message.find("allowed: a text without control characters"), std::string::npos)
+            EXPECT_NE(message.find("allowed: a string without control characters"),
+                      std::string::npos)
                 << message;
             EXPECT_FALSE(has_control_characters(message)) << message;
         }
@@ -872,7 +872,7 @@ TEST(RigReader, RefusesTextsWithoutEnd) {
     const std::string longest(1000, 'a');
     EXPECT_EQ(parse("title = \"" + longest + "\"\n" + std::string(kMinimal)).title, longest);
     EXPECT_EQ(error_of("title = \"" + longest + "a\"\n" + std::string(kMinimal)),
-              "rig.toml:1: title: found a text of 1001 bytes; allowed: up to 1000");
+              "rig.toml:1: title: found a string of 1001 bytes; allowed: up to 1000");
 }
 
 TEST(RigReader, KeepsWhatIsOnlyText) {

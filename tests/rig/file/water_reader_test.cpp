@@ -70,7 +70,7 @@ TEST_F(WaterReader, TakesScatteringOrAttenuation) {
     put("c.csv", "wavelength_nm,attenuation_per_m\n400,0.6\n700,0.3\n");
     EXPECT_EQ(error_of("absorption = \"a.csv\"\nattenuation = \"c.csv\""),
               "rig.toml:10: water.attenuation: found 0.3/m at 700 nm, less than the absorption "
-              "0.4/m; allowed: no less, for it is absorption and scattering");
+              "0.4/m; allowed: no less, since attenuation is absorption plus scattering");
 }
 
 TEST_F(WaterReader, TakesATypeWithParticlesOfAnyPhase) {
@@ -112,13 +112,14 @@ TEST_F(WaterReader, ScattersAsSeaWaterAlone) {
 
 TEST_F(WaterReader, RefusesWhatSaysTwoThings) {
     EXPECT_EQ(error_of("scattering = \"sea-water\"\nphase = \"petzold\""),
-              "rig.toml:10: water.phase: found for what sea water itself scatters, whose phase "
-              "function is known; allowed: with particles");
+              "rig.toml:10: water.phase: found with pure sea water, whose phase function is known; "
+              "allowed: with particles");
     EXPECT_EQ(error_of("phase = \"petzold\""),
               "rig.toml:9: water.phase: found for water that does not scatter; allowed: with type, "
               "chlorophyll_mg_m3, scattering or attenuation");
-    EXPECT_EQ(error_of("type = \"jerlov-3C\"\nparticles = 2"),
-              "rig.toml:10: water.particles: found without chlorophyll_mg_m3; allowed: beside it");
+    EXPECT_EQ(
+        error_of("type = \"jerlov-3C\"\nparticles = 2"),
+        "rig.toml:10: water.particles: found without chlorophyll_mg_m3; allowed: together with it");
     for (const char* both : {"type = \"jerlov-3C\"\nabsorption = \"pure-2016\"",
                              "type = \"jerlov-3C\"\nchlorophyll_mg_m3 = 1",
                              "chlorophyll_mg_m3 = 1\nscattering = \"sea-water\""}) {
@@ -139,10 +140,10 @@ TEST_F(WaterReader, RefusesALampAtThePupilWhereItScatters) {
             parse_rig(at_the_pupil + "type = \"jerlov-II\"\n", "rig.toml", folder_.path()));
         ADD_FAILURE() << "it was taken";
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "rig.toml:13: strobe[0].position_m: found [0, 0, 0]; allowed: in water that "
-                     "scatters, a point at least 0.001 m from the camera's pupil, for the veil has "
-                     "no end there");
+        EXPECT_STREQ(
+            error.what(),
+            "rig.toml:13: strobe[0].position_m: found [0, 0, 0]; allowed: in water that scatters, "
+            "a point at least 0.001 m from the camera's pupil, since the veil is infinite there");
     }
 }
 

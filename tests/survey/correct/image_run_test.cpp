@@ -121,7 +121,7 @@ TEST_F(ImageRun, ABadImageCostsNoOtherAndIsTriedAgain) {
     ASSERT_EQ(outcome.skipped.size(), 3U);
     EXPECT_EQ(outcome.skipped[0].image, path("raw/a.exr").string());
     EXPECT_EQ(outcome.skipped[0].why, "too dark");
-    EXPECT_EQ(outcome.skipped[1].why, "found a link that leads nowhere; allowed: a file");
+    EXPECT_EQ(outcome.skipped[1].why, "found a broken link; allowed: a file");
     EXPECT_EQ(outcome.skipped[2].image, path("raw/c.exr").string());
     EXPECT_EQ(heard_.size(), 3U);
     const nlohmann::ordered_json json = to_json(outcome);

@@ -100,8 +100,7 @@ TEST_F(FitSamplesOfAnImage, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
             EXPECT_FALSE(has(one.why, words)) << one.image << ": ";
         if (!one.image.ends_with("tiff-large.tif")) continue;
         EXPECT_EQ(one.why,
-                  fmt::format("found 16000 x 16000 pixels; allowed: {} x {}, as the rig's camera "
-                              "has",
+                  fmt::format("found 16000 x 16000 pixels; allowed: {} x {}, like the rig's camera",
                               kWidth_px,
                               kHeight_px));
     }

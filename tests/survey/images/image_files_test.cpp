@@ -26,15 +26,15 @@ std::string refusal_of(const std::vector<std::string>& names) {
 }
 
 constexpr std::string_view kAllowed =
-    "; allowed: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW; others file by file";
+    "; allowed: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW; others as single files";
 
 TEST(ImageFiles, AFolderWithoutImagesSaysWhatItHolds) {
-    EXPECT_EQ(refusal_of({}), ": the folder holds no image" + std::string(kAllowed));
+    EXPECT_EQ(refusal_of({}), ": the folder contains no images" + std::string(kAllowed));
     EXPECT_EQ(refusal_of({"a.bmp", "b.txt", "c.txt"}),
-              ": the folder holds no image; found 2 .txt, 1 .bmp" + std::string(kAllowed));
+              ": the folder contains no images; found 2 .txt, 1 .bmp" + std::string(kAllowed));
     EXPECT_EQ(refusal_of({"a.ORF", "b.orf", "c.csv"}),
-              ": the folder holds no image; found 2 .orf, 1 .csv (raw files of these kinds are not "
-              "read: convert them to DNG)" +
+              ": the folder contains no images; found 2 .orf, 1 .csv (raw files of these kinds are "
+              "not read: convert them to DNG)" +
                   std::string(kAllowed));
     EXPECT_EQ(refusal_of({"a.tif", "b.orf"}), "no error");
 }

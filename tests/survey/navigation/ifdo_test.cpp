@@ -95,9 +95,9 @@ TEST(Ifdo, RefusesWhatIsNone) {
     EXPECT_EQ(fault_of("a: [1\nb: 2").find("set.yaml:"), 0U);
     EXPECT_EQ(fault_of("{\"image-set-header\": ").find("set.yaml"), 0U);
     EXPECT_EQ(fault_of("image-set-header: {a: \xff}\nimage-set-items: {}\n"),
-              "set.yaml: found bytes that are no UTF-8");
+              "set.yaml: found bytes that are not UTF-8");
     EXPECT_EQ(fault_of("image-set-header: {}\nimage-set-items:\n  a.jpg: {}\n  a.jpg: {}\n"),
-              "set.yaml:4: 'a.jpg' stands twice");
+              "set.yaml:4: duplicate key 'a.jpg'");
     const auto of_version = [](const std::string& version) {
         return fault_of("image-set-header: {image-set-ifdo-version: " + version +
                         "}\nimage-set-items: {}\n");
@@ -106,7 +106,7 @@ TEST(Ifdo, RefusesWhatIsNone) {
     EXPECT_EQ(
         of_version("v1.1.0"),
         "set.yaml: image-set-ifdo-version: found v1.1.0; allowed: v2.0.0 and later, below v3");
-    EXPECT_EQ(fault_of("? {a: 1}\n: 2\n"), "set.yaml:1: a key is not a word");
+    EXPECT_EQ(fault_of("? {a: 1}\n: 2\n"), "set.yaml:1: a key is not a string");
 }
 
 // Ten levels of ten aliases each are ten thousand million values of 400 letters.
@@ -120,7 +120,7 @@ TEST(Ifdo, RefusesAliasesThatStandForTooMuch) {
     }
     const std::string fault = fault_of(bomb + "image-set-items: {}\n");
     EXPECT_EQ(fault.find("set.yaml:"), 0U);
-    EXPECT_TRUE(has(fault, "its aliases stand for more than the file could hold"));
+    EXPECT_TRUE(has(fault, "its aliases expand to more than the file could hold"));
     EXPECT_NE(fault_of("image-set-header: &a {b: *a}\nimage-set-items: {}\n"), kAccepted)
         << "itself";
 }

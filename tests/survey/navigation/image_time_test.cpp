@@ -54,11 +54,11 @@ TEST(ImageTime, AMaskHasEachPartOnce) {
         "after it, x for any other character";
     const std::vector<std::pair<std::string, std::string>> wrong{
         {"", "which has no YYYY"},
-        {"YYMMDDhhmmss", "which has not YYYY in one place"},
+        {"YYMMDDhhmmss", "in which YYYY is split"},
         {"YYYYMMDDhhmm", "which has no ss"},
-        {"YYYYMMDDhhmmssxmm", "which has not mm in one place"},
-        {"YYxYYMMDDhhmmss", "which has not YYYY in one place"},
-        {"YYYYMMDDhhmmssf", "which has not fff in one place"},
+        {"YYYYMMDDhhmmssxmm", "in which mm is split"},
+        {"YYxYYMMDDhhmmss", "in which YYYY is split"},
+        {"YYYYMMDDhhmmssf", "in which fff is split"},
         {"YYYYMMDDhhmmssuuu", "which has uuu without fff"}};
     for (const auto& one : wrong) {
         EXPECT_EQ(refusal_of([&] { require_time_mask(one.first); }),
@@ -210,7 +210,7 @@ TEST_F(TimeOfFiles, AZoneOfTheFileAloneIsSaid) {
                          nullptr);
     EXPECT_EQ(track.pose_of(file).sled.altitude_m, 2.0);
     ASSERT_EQ(track.warnings().size(), 1U);
-    EXPECT_TRUE(track.warnings().front().starts_with("nav: the times of 1 image are taken for UTC"))
+    EXPECT_TRUE(track.warnings().front().starts_with("nav: the times of 1 image are taken as UTC"))
         << track.warnings().front();
 }
 
@@ -220,12 +220,12 @@ TEST_F(TimeOfFiles, ANameCountsWhereThereIsNoExif) {
     const std::filesystem::path file = image("c_20240309_123456.png");
     EXPECT_NEAR(image_time(file, "xxYYYYMMDDxhhmmss").time_s, 1709987696.0, kDouble_s);
     EXPECT_EQ(refusal_of([&] { return image_time(file, "YYYYMMDDxhhmmss"); }),
-              "its name has no time where --image-time YYYYMMDDxhhmmss has it");
+              "its name has no time where --image-time YYYYMMDDxhhmmss expects it");
     EXPECT_EQ(refusal_of([&] { return image_time(file, ""); }),
-              "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
-              "--image-time says where its name has the time");
+              "it has no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
+              "--image-time gives the time's place in its name");
     EXPECT_EQ(refusal_of([&] { return image_time(folder_.path() / "none.png", ""); }),
-              "there is no such file any more");
+              "the file no longer exists");
 }
 
 }  // namespace

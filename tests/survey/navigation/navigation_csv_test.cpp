@@ -164,11 +164,10 @@ TEST(NavigationCsv, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
     EXPECT_EQ(fault_of_a("z 2 0 0\na.tif 2 0\n"),
               "nav.csv:2: found 3 fields; allowed: 4: image, altitude, pitch, roll");
     EXPECT_EQ(fault_of_a("x/a.tif 2 0 0\nz 2 0 0\ny/a.png 2 0 0\na 2 0 0\n"),
-              "nav.csv:1: the image 'a' stands twice, also on line 4");
-    EXPECT_EQ(fault_of_a(header + ",2,0,0\n"),
-              "nav.csv has no line for it; line 3 has no image's name");
+              "nav.csv:1: duplicate image 'a', also on line 4");
+    EXPECT_EQ(fault_of_a(header + ",2,0,0\n"), "nav.csv has no line for it; line 3 names no image");
     EXPECT_EQ(fault_of_a("altitude_m,image\n2,z\n2\n"),
-              "nav.csv has no line for it; line 3 has no image's name");
+              "nav.csv has no line for it; line 3 names no image");
 }
 
 TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
@@ -176,9 +175,9 @@ TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
               "nav.csv:1: found the columns image,altitude; needed: 'altitude_m' (is it "
               "'altitude'?), or --columns altitude_m=NAME");
     EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
-              "nav.csv:1: the column 'altitude_m' stands twice");
+              "nav.csv:1: duplicate column 'altitude_m'");
     EXPECT_EQ(fault_in("image,altitude_m,Altitude_M\n"),
-              "nav.csv:1: the column 'altitude_m' stands twice");
+              "nav.csv:1: duplicate column 'altitude_m'");
     EXPECT_EQ(fault_in("photo;altitude_m\na.tif;2\n"),
               "nav.csv:1: found the columns photo,altitude_m; needed: 'image' or 'timestamp', or "
               "--columns image=NAME");
@@ -221,7 +220,7 @@ TEST(NavigationCsv, ACommentInATableIsNoRow) {
     EXPECT_EQ(nav.pose_of("h.tif").sled.altitude_m, 2.45);
     EXPECT_EQ(refusal_of([&] { return nav.pose_of("b.tif"); }), "nav.csv has no line for it");
     EXPECT_EQ(fault_in("/* DATA DESCRIPTION:\nimage,altitude_m\na,2\n"),
-              "nav.csv:1: found a comment that begins with /* and never ends in */");
+              "nav.csv:1: found a comment that begins with /* and has no */");
 }
 
 // As numpy.savetxt writes it. By place, the pitch would be an altitude.
@@ -255,8 +254,8 @@ TEST(NavigationCsv, ALastLineWithoutAnEndIsWarnedOf) {
     EXPECT_EQ(nav.pose_of("b").sled.altitude_m, 2.0);
     ASSERT_EQ(nav.warnings().size(), 1U);
     EXPECT_EQ(nav.warnings().front(),
-              "nav.csv:3: the file ends within this line, without a line end: if it was cut short, "
-              "'altitude_m' = '2' may lack digits");
+              "nav.csv:3: the file ends within this line, without a line break: if it was "
+              "truncated, 'altitude_m' = '2' may lack digits");
     // Nothing that counts is in doubt.
     for (const char* whole : {"image,altitude_m\nb,2\n",
                               "image,altitude_m\nb,2\r\n",

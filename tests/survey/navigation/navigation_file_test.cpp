@@ -103,7 +103,7 @@ TEST(NavigationFile, BiiglesCsvInAnyLetterCaseAndByOtherNames) {
         "b.jpg,2016-12-19 12:27:01,52.220,28.123,-1500,,2.6,180\n");
     EXPECT_EQ(nav.pose_of("a.jpg").sled.altitude_m, 10.5);
     EXPECT_EQ(nav.pose_of("a.jpg").sled.pitch_rad, kRigSled.pitch_rad);
-    EXPECT_FALSE(nav.told().pitch || nav.told().roll);
+    EXPECT_FALSE(nav.given().pitch || nav.given().roll);
     EXPECT_NE(fault_of_image(nav, "b.jpg"), "nothing was said");
     const Navigation sub = parsed(
         "file,SUB_datetime,SUB_altitude,SUB_distance,SUB_heading\n"
@@ -178,7 +178,7 @@ TEST(NavigationFile, SquidlesNavdata) {
     EXPECT_EQ(nav.notes()->format, "SQUIDLE+'s CSV");
     const Navigation level = parsed("key,pose.alt\nPR_1,2.5\n");
     EXPECT_EQ(level.pose_of("PR_1.png").sled.altitude_m, 2.5);
-    EXPECT_FALSE(level.told().roll);
+    EXPECT_FALSE(level.given().roll);
 }
 
 TEST(NavigationFile, HabCamsImgWithAndWithoutAHeader) {
@@ -256,7 +256,7 @@ TEST(NavigationFile, ATrackIsJoinedByTheImagesTimes) {
         EXPECT_TRUE(
             has(fault_of_image(nav, "c20240309_110000_000.tif"), "3600 s before the first"));
         EXPECT_EQ(fault_of_image(nav, "c2024.tif"),
-                  "nav: its name has no time where --image-time xYYYYMMDDxhhmmssxfff has it");
+                  "nav: its name has no time where --image-time xYYYYMMDDxhhmmssxfff expects it");
     }
     NavigationOptions late = options;
     late.clock_offset_s = 3600.0;
@@ -322,7 +322,7 @@ TEST(NavigationFile, ColumnsMayAskForTimesInsteadOfNames) {
 TEST(NavigationFile, TimesThatAreSaidInVainAreRefused) {
     EXPECT_EQ(refusal("a.tif 2 0 0\n", {.clock_offset_s = 1.0}),
               "nav: --clock-offset-s found, but its poses are of images and not of times; allowed "
-              "with poses over time, for which --columns time=COLUMN asks");
+              "with poses over time, which --columns time=COLUMN selects");
     EXPECT_TRUE(
         refusal(kOplab, {.time_mask = std::string(kMask)}).starts_with("nav: --image-time"));
 }
@@ -395,7 +395,7 @@ TEST_F(TagsOfImages, AnImageWithoutThemCostsItselfAlone) {
               "tags: altitude_m: found no number; allowed: 0.001 to 10000");
     EXPECT_EQ(fault_of_image(nav, path("e.tif")), "tags: roll: found 'zero'; allowed: a number");
     EXPECT_TRUE(has(fault_of_image(nav, path("f.tif")), "cannot be read"));
-    EXPECT_EQ(fault_of_image(nav, path("g.tif")), "tags: there is no such file any more");
+    EXPECT_EQ(fault_of_image(nav, path("g.tif")), "tags: the file no longer exists");
 }
 
 // --- What altitudes are, and where the camera is -----------------------------------------------
@@ -433,8 +433,8 @@ TEST(NavigationFile, TheRigsMountingCountsAndOptionsComeBeforeIt) {
     expect_sled(parse_navigation(text, options, {}, &rig).pose_of("a").sled, 3.0, 60.0, 0.0);
     EXPECT_EQ(
         refusal_of([&] { return parse_navigation("image,altitude_m\na,2\n", options, {}, &rig); }),
-        "nav: has no pitch and roll; needed, for the rig's position_m and orientation_deg "
-        "place the camera on the vehicle");
+        "nav: has no pitch and roll; needed, since the rig's position_m and orientation_deg place "
+        "the camera on the vehicle");
 }
 
 TEST(NavigationFile, WithoutAttitudesHeightsNeedARig) {

@@ -39,14 +39,14 @@ TEST(NavigationIfdo, HeightsArePlumb) {
     EXPECT_NEAR(sled.roll_rad, 20.0 * kDegree, kDouble);
     const double down = std::cos(30.0 * kDegree) * std::cos(20.0 * kDegree);
     EXPECT_NEAR(sled.altitude_m * down, 2.0, kDouble);
-    EXPECT_TRUE(navigation.told().pitch);
+    EXPECT_TRUE(navigation.given().pitch);
 }
 
 TEST(NavigationIfdo, AnglesThatNoImageHasAreTheRigs) {
     const Navigation navigation = of("image-meters-above-ground: 2", "a.tif: {}, b.tif: [{}]");
     EXPECT_EQ(navigation.size(), 2U);
-    EXPECT_FALSE(navigation.told().pitch);
-    EXPECT_FALSE(navigation.told().roll);
+    EXPECT_FALSE(navigation.given().pitch);
+    EXPECT_FALSE(navigation.given().roll);
     for (const char* image : {"a.tif", "b.tif"}) {
         const Sled& sled = navigation.pose_of(image).sled;
         EXPECT_EQ(sled.pitch_rad, kRigSled.pitch_rad);
@@ -67,10 +67,9 @@ TEST(NavigationIfdo, SkipsImagesAndSaysWhy) {
            "under.tif: {image-meters-above-ground: -1, image-camera-pitch-degrees: 60},"
            "text.tif: nothing");
     EXPECT_EQ(fault_of(navigation, "good.tif"), kAccepted);
-    EXPECT_EQ(
-        fault_of(navigation, "sea.tif"),
-        "set.yaml: found no image-meters-above-ground; image-altitude-meters is over sea level, "
-        "not over the floor");
+    EXPECT_EQ(fault_of(navigation, "sea.tif"),
+              "set.yaml: found no image-meters-above-ground; image-altitude-meters is above sea "
+              "level, not above the floor");
     EXPECT_EQ(fault_of(navigation, "word.tif"),
               "set.yaml: image-meters-above-ground: found a string; allowed: a number");
     EXPECT_EQ(fault_of(navigation, "flat.tif"), "set.yaml: found no image-camera-pitch-degrees");
@@ -88,9 +87,9 @@ TEST(NavigationIfdo, HeightsOverSeaLevelAreRefused) {
     const std::string said =
         refusal_of([&] { return of("image-altitude-meters: -4000", "a.tif: {}"); });
     EXPECT_EQ(said,
-              "set.yaml: found no image-meters-above-ground; image-altitude-meters is over "
-              "sea level, not over the floor, in the header or of any image; allowed: the "
-              "camera's height over the sea floor in metres");
+              "set.yaml: found no image-meters-above-ground; image-altitude-meters is above sea "
+              "level, not above the floor, in the header or of any image; allowed: the camera's "
+              "height above the sea floor in metres");
     EXPECT_THROW((void)of("", ""), InputError);
 }
 

@@ -26,7 +26,7 @@ TEST(Navigation, IsMadeOfPoses) {
     EXPECT_EQ(track.size(), 2U);
     EXPECT_EQ(track.pose_of("raw/a.png").sled.roll_rad, -0.2);
     EXPECT_EQ(track.pose_of("b.dng").sled.altitude_m, 3.0);
-    EXPECT_TRUE(track.told().pitch && track.told().roll);
+    EXPECT_TRUE(track.given().pitch && track.given().roll);
 }
 
 // Of no line: there is none.
@@ -38,7 +38,7 @@ TEST(Navigation, FaultsOfPosesNameTheirSource) {
                             {.image = "c.tif", .sled = {}, .fault = "a gap of 30 s"}});
     EXPECT_EQ(fault_of(track, "a.tif"),
               "track: altitude_m: found no number; allowed: 0.001 to 10000");
-    EXPECT_EQ(fault_of(track, "b.tif"), "track: the image 'b' stands twice");
+    EXPECT_EQ(fault_of(track, "b.tif"), "track: duplicate image 'b'");
     EXPECT_EQ(fault_of(track, "c.tif"), "track: a gap of 30 s");
     EXPECT_EQ(fault_of(track, "d.tif"), "track has no line for it");
 }

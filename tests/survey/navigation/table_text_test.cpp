@@ -69,14 +69,14 @@ TEST(TableText, CommentsOfAnyMarkArePassedOver) {
     EXPECT_EQ(rows_of(";x\n", ';'), (Rows{{"", "x"}}));
     EXPECT_EQ(rows_of("/home/a.tif,2\n"), (Rows{{"/home/a.tif", "2"}}));
     EXPECT_EQ(fault_of("a,b\n/* x\n1,2\n"),
-              "t:2: found a comment that begins with /* and never ends in */");
+              "t:2: found a comment that begins with /* and has no */");
 }
 
 TEST(TableText, FieldsHaveLimits) {
     EXPECT_EQ(fault_of(std::string(kMostTableFields, ',')),
               "t:1: found more than 10000 fields in a line");
     EXPECT_EQ(fault_of("a\n" + std::string(kMostFieldBytes + 1, 'x')),
-              "t:2: found a field of 65537 letters; allowed: up to 65536");
+              "t:2: found a field of 65537 characters; allowed: up to 65536");
 }
 
 }  // namespace

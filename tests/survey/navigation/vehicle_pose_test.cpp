@@ -147,7 +147,7 @@ TEST(VehiclePose, ACameraThatCannotSeeTheFloorIsRefusedWithItsNumbers) {
         fault_of({2.0, 15.0 * kDegree, 0.0}, {.roll_pitch_yaw_rad = {0.0, 80.0 * kDegree, 0.0}}),
         "the camera looks 5 degrees above the horizon; allowed: below it, to see the floor");
     EXPECT_EQ(fault_of({1.0, 0.0, 0.0}, {.position_m = {0.0, 0.0, 1.25}}),
-              "the camera is 0.25 m under the floor: the vehicle's origin is 1 m over it, and the "
+              "the camera is 0.25 m below the floor: the vehicle's origin is 1 m above it, and the "
               "camera 1.25 m lower");
 }
 

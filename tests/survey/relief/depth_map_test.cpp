@@ -70,7 +70,7 @@ TEST_F(DepthMaps, ThatCannotBeReadSayWhy) {
                     "shape (1, 2, 3); allowed: rows and columns"));
     write_file(path("a.bin"), "3&2&1&" + bytes().substr(1));
     EXPECT_TRUE(
-        has(refusal_of([&] { (void)read_depth_map(path("a.bin")); }), "no depth map of COLMAP's"));
+        has(refusal_of([&] { (void)read_depth_map(path("a.bin")); }), "not a COLMAP depth map"));
     write_file(path("a.npy"), "nothing");
     EXPECT_TRUE(has(refusal_of([&] { (void)read_depth_map(path("a.npy")); }), "no such array"));
     ExrWriter exr(path("rgb.exr"), 1, 1, {"R", "G", "B"}, {});
@@ -84,13 +84,13 @@ TEST_F(DepthMaps, AreFoundByTheImagesName) {
     const fs::path image = path("a.tif");
     write_file(image, "an image of the same folder is none");
     EXPECT_TRUE(has(refusal_of([&] { (void)depth_file(folder_.path(), image); }),
-                    "found no depth map of it"));
+                    "found no depth map for it"));
     write_file(path("depth_a.png"), "");
     EXPECT_EQ(depth_file(folder_.path(), image), path("depth_a.png"));
     EXPECT_EQ(depth_file(path("depth_a.png"), image), path("depth_a.png"));
     write_file(path("a.tif.geometric.bin"), "");
     EXPECT_TRUE(has(refusal_of([&] { (void)depth_file(folder_.path(), image); }),
-                    "found 2 depth maps of it"));
+                    "found 2 depth maps for it"));
 }
 
 // A plane stays one at another size; between a step's sides nothing is made up.

@@ -94,11 +94,11 @@ TEST(RawCamera, TakesLevelsOf16BitsAndAPatternOfItsChannels) {
               "white_level_dn: found 70000; allowed: over the black level, 64, to 65535");
     EXPECT_EQ(said({.black_level_dn = 5000.0}),
               "white_level_dn: found 4095; allowed: over the black level, 5000, to 65535");
-    EXPECT_EQ(
-        said({.bayer = "mono"}),
-        "bayer: found mono; allowed: a pattern of colours, as the rig's response is of three");
+    EXPECT_EQ(said({.bayer = "mono"}),
+              "bayer: found mono; allowed: a colour pattern, since the rig's response has three "
+              "channels");
     EXPECT_EQ(said({.bayer = "RGGB"}, true),
-              "bayer: found RGGB; allowed: mono, as the rig's response is of one channel");
+              "bayer: found RGGB; allowed: mono, since the rig's response has one channel");
 }
 
 // --- EMVA 1288 --------------------------------------------------------------------------------
