@@ -192,7 +192,8 @@ void plot(const Beam& beam, const std::string& file) {
     Plot polar{.title = "as thrown, axis up",
                .x_label = "intensity times the sine [1/sr]",
                .y_label = "intensity times the cosine [1/sr]",
-               .curves = {}};
+               .curves = {},
+               .equal_axes = true};
     for (const BeamPlane plane : {BeamPlane::Along, BeamPlane::Across}) {
         const bool is_along = plane == BeamPlane::Along;
         PlotCurve over_angle{.label = is_along ? "along" : "across",

@@ -10,6 +10,7 @@
 #include "rig/geometry.h"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -199,77 +200,128 @@ std::vector<PagePart> front(const DesignResult& result) {
             svg_drawing("trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)}};
 }
 
-// From above, forward up: the strobes, and a line along each aim, halfway to the floor.
-std::string plan_of(const Rig& rig, const DesignResult& result) {
-    constexpr double kSide = 520.0;
-    constexpr double kRoom = 40.0;
-    constexpr double kHalf = 0.5;
-    double reach_m = 0.0;
-    std::string elements;
-    const auto aim_of = [&](const StrobePlace& place) {
-        return Eigen::Vector3d(place.position_m + kHalf * rig.sled.altitude_m * place.axis);
-    };
-    for (const Design* design : {&result.start, &result.best}) {
-        for (const StrobePlace& place : design->places) {
-            for (const Eigen::Vector3d& at : {place.position_m, aim_of(place)})
-                reach_m = std::max(reach_m, at.head<2>().cwiseAbs().maxCoeff());
-        }
-    }
-    std::vector<std::array<double, 2>> corners;
+using Points = std::vector<Eigen::Vector3d>;
+
+// Where the edge of the view meets the floor.
+Points seen_floor(const Rig& rig) {
     const double width = rig.camera.width_px;
     const double height = rig.camera.height_px;
     const Plane floor = floor_plane(rig.sled);
+    Points corners;
     for (const auto& [column, row] : {std::array{0.0, 0.0},
                                       std::array{width, 0.0},
                                       std::array{width, height},
                                       std::array{0.0, height}}) {
         const WaterRay ray = pixel_ray(rig, column, row, rig.camera.range.first_nm);
-        const auto distance_m = distance_to(floor, ray);
-        if (!distance_m) continue;
-        const Eigen::Vector3d point_m = ray.origin_m + *distance_m * ray.direction;
-        corners.push_back({point_m.x(), point_m.y()});
-        reach_m = std::max(reach_m, point_m.head<2>().cwiseAbs().maxCoeff());
+        if (const auto distance_m = distance_to(floor, ray))
+            corners.push_back(ray.origin_m + *distance_m * ray.direction);
     }
-    const double px_per_m = (kHalf * kSide - kRoom) / reach_m;
-    const auto x_px = [&](double starboard_m) { return kHalf * kSide + px_per_m * starboard_m; };
-    const auto y_px = [&](double forward_m) { return kHalf * kSide - px_per_m * forward_m; };
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const auto& a = corners[i];
-        const auto& b = corners[(i + 1) % corners.size()];
-        elements += svg_line(x_px(a[1]), y_px(a[0]), x_px(b[1]), y_px(b[0]), R"(class="guide")");
+    return corners;
+}
+
+// Which way the sled's x forward, y starboard and z down are drawn, to the right and down.
+struct SledView {
+    const char* id;
+    const char* name;
+    Eigen::Vector3d right;
+    Eigen::Vector3d down;
+};
+
+// A drawing to scale of what is added to it.
+class SledDrawing {
+  public:
+    SledDrawing(const SledView& view, const Points& shown) : view_(view) {
+        Eigen::AlignedBox2d box;
+        for (const Eigen::Vector3d& point : shown) box.extend(flat(point));
+        px_per_m_ = (kSide - 2.0 * kRoom) / box.sizes().maxCoeff();
+        middle_ = box.center();
     }
-    constexpr std::array<std::size_t, 2> kPlanTones{1, 2};
+
+    void add_line(const Eigen::Vector3d& from,
+                  const Eigen::Vector3d& to,
+                  const std::string& style) {
+        const Eigen::Vector2d a = px(from);
+        const Eigen::Vector2d b = px(to);
+        elements_ += svg_line(a.x(), a.y(), b.x(), b.y(), style);
+    }
+    void add_dot(const Eigen::Vector3d& at, const std::string& tone) {
+        elements_ += fmt::format(
+            R"(<path stroke-linecap="round" class="dots" style="stroke-width: 11px" {} d="M{:.1f} {:.1f}h0"/>)",
+            tone,
+            px(at).x(),
+            px(at).y());
+    }
+    void add_label(const Eigen::Vector3d& at, const std::string& text) {
+        const Eigen::Vector2d place = px(at) + Eigen::Vector2d(9.0, -7.0);
+        elements_ += svg_text(place.x(), place.y(), SvgAnchor::Start, R"(class="label")", text);
+    }
+    [[nodiscard]] std::string svg() const {
+        return svg_drawing(view_.id, view_.name, kSide, kSide, elements_);
+    }
+
+  private:
+    static constexpr double kSide = 520.0;
+    static constexpr double kRoom = 40.0;
+
+    [[nodiscard]] Eigen::Vector2d flat(const Eigen::Vector3d& point) const {
+        return {view_.right.dot(point), view_.down.dot(point)};
+    }
+    [[nodiscard]] Eigen::Vector2d px(const Eigen::Vector3d& point) const {
+        return Eigen::Vector2d::Constant(0.5 * kSide) + px_per_m_ * (flat(point) - middle_);
+    }
+
+    SledView view_;
+    double px_per_m_ = 0.0;
+    Eigen::Vector2d middle_;
+    std::string elements_;
+};
+
+// The strobes, and a line along each aim, halfway to the floor.
+std::string places_seen(const Rig& rig, const DesignResult& result, const SledView& view) {
+    constexpr double kHalf = 0.5;
+    constexpr std::array<std::size_t, 2> kPlaceTones{1, 2};
     const std::array<const Design*, 2> both{&result.start, &result.best};
+    const auto aim_of = [&](const StrobePlace& place) {
+        return Eigen::Vector3d(place.position_m + kHalf * rig.sled.altitude_m * place.axis);
+    };
+    const Points floor = seen_floor(rig);
+    Points shown = floor;
+    for (const Design* design : both) {
+        for (const StrobePlace& place : design->places)
+            shown.insert(shown.end(), {place.position_m, aim_of(place)});
+    }
+    SledDrawing drawing(view, shown);
+    for (std::size_t i = 0; i < floor.size(); ++i)
+        drawing.add_line(floor[i], floor[(i + 1) % floor.size()], R"(class="guide")");
     for (std::size_t i = 0; i < both.size(); ++i) {
-        const std::string tone = svg_tone(kPlanTones.at(i));
-        for (std::size_t s = 0; s < both.at(i)->places.size(); ++s) {
-            const StrobePlace& place = both.at(i)->places[s];
-            const Eigen::Vector3d& at = place.position_m;
-            const Eigen::Vector3d to = aim_of(place);
-            elements += svg_line(
-                x_px(at.y()), y_px(at.x()), x_px(to.y()), y_px(to.x()), R"(class="curve" )" + tone);
-            elements += fmt::format(
-                R"(<path stroke-linecap="round" class="dots" style="stroke-width: 11px" {} d="M{:.1f} {:.1f}h0"/>)",
-                tone,
-                x_px(at.y()),
-                y_px(at.x()));
-            if (i == 1)
-                elements += svg_text(x_px(at.y()) + 9.0,
-                                     y_px(at.x()) - 7.0,
-                                     SvgAnchor::Start,
-                                     R"(class="label")",
-                                     rig.strobes[s].name);
+        const std::string tone = svg_tone(kPlaceTones.at(i));
+        for (const StrobePlace& place : both.at(i)->places) {
+            drawing.add_line(place.position_m, aim_of(place), R"(class="curve" )" + tone);
+            drawing.add_dot(place.position_m, tone);
         }
     }
-    return svg_drawing("plan", "the strobes from above", kSide, kSide, elements);
+    for (std::size_t s = 0; s < result.best.places.size(); ++s)
+        drawing.add_label(result.best.places[s].position_m, rig.strobes[s].name);
+    return drawing.svg();
+}
+
+// "26.0° to 180°": from straight down, towards that bearing from the bow, clockwise.
+std::string tilt_text(const Eigen::Vector3d& axis) {
+    constexpr double kTurn_deg = 360.0;
+    constexpr double kStraight_deg = 0.05;
+    const double tilt_deg = std::acos(std::clamp(axis.z(), -1.0, 1.0)) * kDegreesPerRadian;
+    if (tilt_deg < kStraight_deg) return "0.0°";
+    const double bearing_deg = std::atan2(axis.y(), axis.x()) * kDegreesPerRadian;
+    return fmt::format(
+        "{:.1f}° to {:.0f}°", tilt_deg, std::fmod(std::round(bearing_deg) + kTurn_deg, kTurn_deg));
 }
 
 std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
     PageTable table{.columns = {"strobe",
                                 "position at start (m)",
                                 "position (m)",
-                                "direction at start",
-                                "direction",
+                                "tilt at start",
+                                "tilt",
                                 "power (start = 1)"}};
     const auto vector = [](const Eigen::Vector3d& v) {
         return fmt::format("{:.3f}, {:.3f}, {:.3f}", v.x(), v.y(), v.z());
@@ -281,14 +333,25 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
             {.cells = {rig.strobes[s].name,
                        vector(was.position_m),
                        vector(is.position_m),
-                       vector(was.axis),
-                       vector(is.axis),
+                       tilt_text(was.axis),
+                       tilt_text(is.axis),
                        was.power > 0.0 ? fmt::format("{:.3f}", is.power / was.power) : "none"}});
     }
-    return {std::move(table),
-            "From above, forward up: the start in red, the design in green, each with a line along "
-            "its aim, half the altitude long; dashed, what the camera sees of the floor.",
-            PagePlot{plan_of(rig, result)}};
+    const SledView above{.id = "above",
+                         .name = "the strobes from above",
+                         .right = Eigen::Vector3d::UnitY(),
+                         .down = -Eigen::Vector3d::UnitX()};
+    const SledView side{.id = "side",
+                        .name = "the strobes from starboard",
+                        .right = Eigen::Vector3d::UnitX(),
+                        .down = Eigen::Vector3d::UnitZ()};
+    return {
+        std::move(table),
+        "Tilts are from straight down, towards a bearing clockwise from the bow. Drawn from above, "
+        "bow up, and from starboard, bow right: the start in red, the design in green, each with "
+        "a line along its aim, half the altitude long; dashed, the floor in view.",
+        PagePlot{places_seen(rig, result, above)},
+        PagePlot{places_seen(rig, result, side)}};
 }
 
 PageTable poses(const DesignResult& result) {

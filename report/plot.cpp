@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -51,9 +53,24 @@ std::string legend(const Plot& plot, double& top) {
     return svg;
 }
 
+constexpr int kTicksX = 8;
+constexpr int kTicksY = 6;
+
+void widen(SvgAxis& axis, double length, int ticks) {
+    const double middle = std::midpoint(axis.first, axis.last);
+    SvgAxis wider = linear_axis(middle - 0.5 * length, middle + 0.5 * length, ticks);
+    wider.title = std::move(axis.title);
+    axis = std::move(wider);
+}
+
+void make_equal(SvgPanel& panel) {
+    const double unit = std::max((panel.x.last - panel.x.first) / panel.width,
+                                 (panel.y.last - panel.y.first) / panel.height);
+    widen(panel.x, unit * panel.width, kTicksX);
+    widen(panel.y, unit * panel.height, kTicksY);
+}
+
 SvgPanel panel_of(const Plot& plot) {
-    constexpr int kTicksX = 8;
-    constexpr int kTicksY = 6;
     ValueRange x;
     ValueRange y;
     for (const PlotCurve& curve : plot.curves) {
@@ -109,6 +126,7 @@ std::string drawing_of(const Plot& plot, double top) {
     svg += legend(plot, panel.top);
     panel.top += 14.0;
     panel.height = top + kHeight - kAxisHeight - panel.top;
+    if (plot.equal_axes) make_equal(panel);
     svg += svg_axes(panel);
     for (const double mark : plot.marks_x) {
         if (!(mark >= panel.x.first && mark <= panel.x.last)) continue;

@@ -30,6 +30,9 @@ struct Plot {
     std::string y_label;
     std::vector<PlotCurve> curves;
     bool log_y = false;
+    // A unit is as long in x as in y: the shorter range is widened about its middle. Not with
+    // log_y.
+    bool equal_axes = false;
     // Thin dashed grey lines from bottom to top, behind the curves; none outside the x axis.
     std::vector<double> marks_x = {};
 };

@@ -126,6 +126,31 @@ TEST(WritePlots, DrawsALogarithmicAxis) {
     EXPECT_TRUE(points_of(curves.at(1)).empty()) << "its only point is at 0";
 }
 
+// A square stays one, and a tall or flat one is whole.
+TEST(WritePlots, EqualAxesKeepShapes) {
+    for (const auto& [width, height] : {std::pair{1.0, 1.0}, {0.1, 3.0}, {300.0, 1.0}}) {
+        const Plot plot{.title = "shape",
+                        .x_label = "x",
+                        .y_label = "y",
+                        .curves = {{"", {0.0, width, width}, {0.0, 0.0, height}}},
+                        .equal_axes = true};
+        const std::string svg = svg_of(plot);
+        const Frame frame = frames_in(svg).at(0);
+        const auto points = points_of(curves_in(svg).at(0));
+        ASSERT_EQ(points.size(), 3U);
+        const double width_px = points[1][0] - points[0][0];
+        const double height_px = points[1][1] - points[2][1];
+        EXPECT_NEAR(
+            width_px * height, height_px * width, 2.0 * kDecimals * std::max(width, height));
+        for (const auto& point : points) {
+            EXPECT_GE(point[0], frame.left - kDecimals);
+            EXPECT_LE(point[0], frame.right + kDecimals);
+            EXPECT_GE(point[1], frame.top - kDecimals);
+            EXPECT_LE(point[1], frame.bottom + kDecimals);
+        }
+    }
+}
+
 TEST(WritePlots, DashesTheCurve) {
     Plot plot = some_plot();
     EXPECT_FALSE(contains(svg_of(plot), "class=\"curve dashed\""));
