@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -29,6 +30,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -112,11 +114,19 @@ void add_completion(CLI::App& app, Action& chosen) {
         ->trigger_on_parse();
 }
 
+// Options keep their hyphens; what follows them, and all else, is as a shell takes it.
+std::string typed(std::string_view argument) {
+    const std::size_t hyphens = std::min(argument.find_first_not_of('-'), argument.size());
+    const std::string_view rest = argument.substr(hyphens);
+    return std::string(argument.substr(0, hyphens)) +
+           (rest.empty() && hyphens > 0 ? "" : aphotic::shell_word(rest));
+}
+
 aphotic::PageOrigin page_origin(int argc, char** argv) {
     constexpr std::size_t kMostCharacters = 2000;  // of a shell's thousand images the first
     std::string command = "aphotic";
     for (int i = 1; i < argc && command.size() < kMostCharacters; ++i)
-        command += " " + aphotic::shell_word(argv[i]);
+        command += " " + typed(argv[i]);
     if (command.size() >= kMostCharacters) command += " ...";
     const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
     const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(now));
@@ -159,8 +169,8 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.failure_message(words_of_failure);
     app.footer(
-        "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
-        "POV-Ray or the file system failed. Ends by the signal when interrupted.");
+        "Exit status: 0 success; 1 a check failed; 2 wrong command line or input file; 3 "
+        "POV-Ray or the file system failed. If interrupted, it exits by the signal.");
 
     aphotic::set_page_origin(page_origin(argc, argv));
     Action chosen;

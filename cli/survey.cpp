@@ -343,7 +343,9 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
     const FolderLock lock = claim_folder(survey.folder);
     begin_survey(survey);
     ProgressLine line;
-    survey.progress = [&](double share) { line.show("images", share); };
+    survey.progress = [&](std::string_view kind, double share) {
+        line.show(fmt::format("images, {}", kind), share);
+    };
     const bool has_scene = !scene_of(options, survey.rig).empty();
     if (is_by_povray(options, survey.rig)) {
         if (povray) make_truth_by_povray(options, survey, *povray);

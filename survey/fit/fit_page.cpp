@@ -54,9 +54,12 @@ std::vector<std::string> verdict(const FitResult& result) {
                         "or another lens. {} of the signal is veil.",
                         percent(result.unevenness),
                         percent(result.veil_share)),
-            is_chance ? fmt::format("The fixed pattern over all images, {} of the light, is no "
-                                    "more than the floor's texture gives by chance.",
-                                    percent(pattern.rms))
+            is_chance ? fmt::format("The fixed pattern over all images, {} of the light, does not "
+                                    "exceed the floor's texture: whitened, its mean square is "
+                                    "{:.2f}, where chance gives 1 ± {:.2f}.",
+                                    percent(pattern.rms),
+                                    pattern.whitened,
+                                    pattern.chance)
                       : fmt::format("The fixed pattern over all images, {} of the light, is more "
                                     "than the floor's texture gives by chance, {}.",
                                     percent(pattern.rms),

@@ -117,7 +117,7 @@ void for_missing(const SimulatedSurvey& survey, const char* kind, const Work& wo
     parallel_for(missing.size(), static_cast<std::size_t>(survey.jobs), [&](auto i, auto) {
         work(*missing[i]);
         const std::scoped_lock lock(mutex);
-        survey.progress(static_cast<double>(++done) / static_cast<double>(missing.size()));
+        survey.progress(kind, static_cast<double>(++done) / static_cast<double>(missing.size()));
     });
 }
 

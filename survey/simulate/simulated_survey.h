@@ -58,7 +58,7 @@ struct SimulatedSurvey {
     int jobs = 1;
     TruthAsked truth{};
     nlohmann::ordered_json made_by{};  // what else the images depend on
-    std::function<void(double share)> progress = [](double) {};
+    std::function<void(std::string_view kind, double share)> progress = [](auto, double) {};
 };
 
 inline constexpr const char* kSurveyNotes = "survey.json";
