@@ -186,7 +186,7 @@ TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
     const Arguments fit = "fit rig.toml --images survey/raw --depth-map survey/depth -o fitted" +
                           kCamera + "--blocks 12 --allow-skipped 2";
     const CommandResult run = done(aphotic(fit), "splines fitted to 17 images\n");
-    EXPECT_TRUE(has(run.err, "000003.tif: found no depth map of it in survey/depth; allowed: "));
+    EXPECT_TRUE(has(run.err, "000003.tif: found no depth map for it in survey/depth; allowed: "));
     EXPECT_TRUE(has(run.err,
                     "000005.tif: found 36 of 108 blocks of one plane that all strobes see; "
                     "allowed: half or more; skipped"));
@@ -202,6 +202,35 @@ TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
         EXPECT_EQ(image.at("altitude_off_m").get<double>(), 0.0);
         EXPECT_GT(image.at("altitude_m").get<double>(), 1.2);  // 1.3 to 3.2 were flown
     }
+}
+
+// A level mesh of two triangles, over which each image stands at its altitude.
+TEST_F(CommandFit, TakesTheFloorFromAMesh) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.fore_tilt_deg += 2.0;
+    write_rigs(of_few_pixels(), numbers);
+    fly("--images 16 --texture 0.005 --pitch 0,0 --roll 0,0");
+    write_file(path("level.ply"),
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+               "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+               "end_header\n-50 -50 -20\n50 -50 -20\n50 50 -20\n-50 50 -20\n4 0 1 2 3\n");
+    std::string nav = replaced(
+        text_of("survey/navigation.txt"), "roll_deg\n", "roll_deg,east_m,north_m,heading_deg\n");
+    for (std::size_t at = nav.find('\n') + 1; (at = nav.find('\n', at)) != std::string::npos;) {
+        constexpr std::string_view kPlace = ",3,4,30";
+        nav.insert(at, kPlace);
+        at += kPlace.size() + 1;
+    }
+    write_file(path("nav.csv"), nav);
+    done(aphotic("fit rig.toml --images survey/raw --nav nav.csv --relief level.ply "
+                 "--relief-place altitude -o fitted" +
+                 kCamera + "--blocks 12"),
+         "splines fitted to 16 images\n");
+    const Json aim = number("strobe.fore.aim_along_deg");
+    const double error_deg = aim.at("error").get<double>();
+    EXPECT_NEAR(
+        aim.at("value").get<double>(), 2.0 * std::cos(std::atan2(0.1, 0.5)), kSigmas * error_deg);
+    EXPECT_LT(error_deg, 0.5);
 }
 
 // A lamp of a millionth of the light has no aim that anybody sees.
