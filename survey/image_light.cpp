@@ -31,7 +31,7 @@ void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& m
     const double ratio = altitude_m ? depth_m / *altitude_m : 1.0;
     if (!(ratio > kOtherUnit || ratio < 1.0 / kOtherUnit)) return;
     throw InputError(
-        "found depths of {:.4g} m in the median of its depth map, and an altitude of {:.4g} m; "
+        "found a median depth of {:.4g} m in its depth map, and an altitude of {:.4g} m; "
         "allowed: {}",
         depth_m,
         *altitude_m,

@@ -568,14 +568,15 @@ void check_depth(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     } else if (const auto plane = like_other(looks, &ImageLook::as_plane)) {
         tell(
             fmt::format("the images match the navigation's plane better than their depth maps "
-                        "({:.2g}; 0 for the maps). Are the maps, or places over the mesh, other "
-                        "images'?",
+                        "({:.2g}; 0 for the maps). Do the maps, or the places over the "
+                        "mesh, belong to other images?",
                         *plane));
     } else if (likeness < kLikeAltitudes) {
-        tell(fmt::format(
-            "the depths of maps do not go with the navigation's altitudes "
-            "(correlation {:.2g}). Are the maps, or places over the mesh, other images'?",
-            likeness));
+        tell(
+            fmt::format("the depths of maps do not go with the navigation's altitudes "
+                        "(correlation {:.2g}). Do the maps, or the places over the mesh, belong to "
+                        "other images?",
+                        likeness));
     }
 }
 

@@ -21,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const Arguments kCommands(
-    "render plan generate integrate trace lightmap design validate study survey correct observe "
+    "init render plan generate integrate trace lightmap design validate study survey correct "
+    "observe "
     "fit baseline beam compare data help");
 
 const Arguments kRender("render rig.toml -o out --wavelengths 478,576,638");

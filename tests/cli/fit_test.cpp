@@ -398,7 +398,7 @@ TEST_F(CommandFit, SaysWhatItNeeds) {
              {maps + "--depth-map .", "--depth-map: found with --maps; allowed: with --images"},
              {"fit rig.toml --images . -o fitted --depth-unit mm", "--depth-unit"},
              {"fit rig.toml --images a.exr --depth-map . --normals floor -o fitted",
-              "--normals floor needs --nav, which says how the floor lies"},
+              "--normals floor needs --nav, which gives the floor's orientation"},
              {"fit rig.toml --images a.exr --depth-map nowhere -o fitted", "--depth-map: "},
              {maps + "--bayer RGGB", "--bayer: found with --maps; allowed: with --images"},
              {maps + "--beam cosine --free aim", "--beam" + no_beam},

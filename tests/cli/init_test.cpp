@@ -19,6 +19,8 @@ TEST_F(Init, WritesARigWithAllThatItNames) {
 
 TEST_F(Init, PlanListsWhatIsNotMeasured) {
     done("init my-rig.toml", "my-rig.toml\n20 lines are guesses");
+    EXPECT_EQ(json_by("init same.toml --json"),
+              nlohmann::json::parse(R"({"files": ["same.toml"], "guesses": 20})"));
     const auto lines = json_by("plan my-rig.toml --json").at("unmeasured");
     EXPECT_EQ(lines.size(), 20U);
     EXPECT_EQ(lines.at(1).at("text"), "pixel_pitch_um  = 6.45");

@@ -266,8 +266,8 @@ TEST_F(Memory, LowersTheJobsToWhatItAllows) {
     ASSERT_TRUE(
         std::regex_search(run.err,
                           found,
-                          std::regex("renders (\\d+) frames? at a time, for POV-Ray takes up to "
-                                     "(.*) GB of memory for each, and (.*) GB are free")))
+                          std::regex("renders (\\d+) frames? at a time, since POV-Ray takes up to "
+                                     "(.*) GB of memory for each, and (.*) GB is free")))
         << run.err;
     const double jobs = read_number<double>(found[1].str()).value();
     const double each_gb = read_number<double>(found[2].str()).value();
