@@ -4,13 +4,13 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/number_bytes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
@@ -21,33 +21,23 @@
 
 namespace aphotic {
 
-static_assert(std::endian::native ==
-              std::endian::little);  // samples are read and written as they are
-
 namespace {
 
 constexpr std::string_view kMagic{"\x93NUMPY", 6};
-
-template <typename Number>
-float number_at(const char* bytes) {
-    Number number{};
-    std::memcpy(&number, bytes, sizeof number);
-    return static_cast<float>(number);
-}
 
 // By descr, without the byte order's sign.
 struct NumberType {
     std::string_view descr;
     std::size_t bytes;
-    float (*at)(const char* bytes);
+    float (*at)(const void* bytes);
 };
-constexpr std::array kNumberTypes{NumberType{"f4", 4, number_at<float>},
-                                  NumberType{"f8", 8, number_at<double>},
-                                  NumberType{"u1", 1, number_at<std::uint8_t>},
-                                  NumberType{"u2", 2, number_at<std::uint16_t>},
-                                  NumberType{"i2", 2, number_at<std::int16_t>},
-                                  NumberType{"u4", 4, number_at<std::uint32_t>},
-                                  NumberType{"i4", 4, number_at<std::int32_t>}};
+constexpr std::array kNumberTypes{NumberType{"f4", 4, number_at<float, float>},
+                                  NumberType{"f8", 8, number_at<double, float>},
+                                  NumberType{"u1", 1, number_at<std::uint8_t, float>},
+                                  NumberType{"u2", 2, number_at<std::uint16_t, float>},
+                                  NumberType{"i2", 2, number_at<std::int16_t, float>},
+                                  NumberType{"u4", 4, number_at<std::uint32_t, float>},
+                                  NumberType{"i4", 4, number_at<std::int32_t, float>}};
 
 // The header's text, and where the samples start. Version 1 stores its length in two bytes, later
 // versions in four.

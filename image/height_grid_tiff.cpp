@@ -3,6 +3,7 @@
 // The part of the command that links libtiff; see height_grid.h.
 #include "base/error.h"
 #include "base/number.h"
+#include "base/number_bytes.h"
 #include "image/height_grid.h"
 #include "image/image_size.h"
 #include "image/tiff_handle.h"
@@ -12,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <span>
@@ -76,7 +76,7 @@ void require_metres(const std::map<int, int>& keys) {
     if (of(kModelType, 0) == kGeographic)
         throw InputError(
             "found a grid of geographic degrees; allowed: metres of a projection, as "
-            "`gdalwarp -t_srs EPSG:32619 IN.tif OUT.tif` makes of it, in the navigation's zone");
+            "`gdalwarp -t_srs EPSG:32619 IN.tif OUT.tif` makes them, in the navigation's zone");
     for (const auto& [key, what] : {std::pair{3076, "across"}, {4099, "of its heights"}}) {
         const int unit = of(key, kMetre);
         if (unit != kMetre && unit != kOwn)
@@ -94,12 +94,12 @@ void place_on_map(TIFF* tiff, HeightGrid& grid) {
     if (scale.size() < 2 || tie.size() != kTie) {
         const bool is_turned = !values_of<double>(tiff, kModelTransformation, TIFF_DOUBLE).empty();
         throw InputError(
-            "found {}; needed: ModelPixelScale and one ModelTiepoint, as gdalwarp writes them of a "
-            "GeoTIFF that is north up",
-            is_turned ? "a ModelTransformation" : "no place of its pixels on the map");
+            "found {}; needed: ModelPixelScale and one ModelTiepoint, as gdalwarp writes them to a "
+            "north-up GeoTIFF",
+            is_turned ? "a ModelTransformation" : "no georeference");
     }
     if (!(scale[0] > 0.0 && scale[1] > 0.0 && std::isfinite(tie[3]) && std::isfinite(tie[4])))
-        throw InputError("found pixels of {} x {} m; allowed: over 0", scale[0], scale[1]);
+        throw InputError("found pixels of {} x {} m; allowed: above 0", scale[0], scale[1]);
     const auto keys = geo_keys(tiff);
     require_metres(keys);
     const auto raster = keys.find(kRasterType);
@@ -110,26 +110,20 @@ void place_on_map(TIFF* tiff, HeightGrid& grid) {
     grid.north_m = tie[4] - (middle - tie[1]) * scale[1];
 }
 
-template <typename Number>
-float height_at(const std::uint8_t* bytes) {
-    Number number{};
-    std::memcpy(&number, bytes, sizeof number);
-    return static_cast<float>(number);
-}
-
 struct SampleKind {
     std::uint16_t format;
     std::uint16_t bits;
-    float (*at)(const std::uint8_t* bytes);
+    float (*at)(const void* bytes);
 };
-constexpr std::array kSampleKinds{SampleKind{SAMPLEFORMAT_IEEEFP, 32, height_at<float>},
-                                  SampleKind{SAMPLEFORMAT_IEEEFP, 64, height_at<double>},
-                                  SampleKind{SAMPLEFORMAT_INT, 8, height_at<std::int8_t>},
-                                  SampleKind{SAMPLEFORMAT_INT, 16, height_at<std::int16_t>},
-                                  SampleKind{SAMPLEFORMAT_INT, 32, height_at<std::int32_t>},
-                                  SampleKind{SAMPLEFORMAT_UINT, 8, height_at<std::uint8_t>},
-                                  SampleKind{SAMPLEFORMAT_UINT, 16, height_at<std::uint16_t>},
-                                  SampleKind{SAMPLEFORMAT_UINT, 32, height_at<std::uint32_t>}};
+constexpr std::array kSampleKinds{
+    SampleKind{SAMPLEFORMAT_IEEEFP, 32, number_at<float, float>},
+    SampleKind{SAMPLEFORMAT_IEEEFP, 64, number_at<double, float>},
+    SampleKind{SAMPLEFORMAT_INT, 8, number_at<std::int8_t, float>},
+    SampleKind{SAMPLEFORMAT_INT, 16, number_at<std::int16_t, float>},
+    SampleKind{SAMPLEFORMAT_INT, 32, number_at<std::int32_t, float>},
+    SampleKind{SAMPLEFORMAT_UINT, 8, number_at<std::uint8_t, float>},
+    SampleKind{SAMPLEFORMAT_UINT, 16, number_at<std::uint16_t, float>},
+    SampleKind{SAMPLEFORMAT_UINT, 32, number_at<std::uint32_t, float>}};
 
 template <typename Value>
 Value tag_number(TIFF* tiff, std::uint32_t tag) {
@@ -192,7 +186,7 @@ void leave_out_unknown(TIFF* tiff, HeightGrid& grid) {
         metadata.find("role=\"offset\"") != std::string::npos)
         throw InputError(
             "found a scale or offset of its numbers in GDAL_METADATA; allowed: metres, as "
-            "`gdal_translate -unscale -ot Float32` makes of it");
+            "`gdal_translate -unscale -ot Float32` makes them");
     std::string nodata = text_of(tiff, kGdalNodata);
     std::erase(nodata, ' ');
     const auto none = aphotic::read_number<double>(nodata);

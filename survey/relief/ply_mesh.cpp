@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/number_bytes.h"
 #include "base/printable.h"
 #include "rig/beam/photometric_text.h"
 #include "rig/file/mesh_reader.h"
@@ -11,10 +12,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -22,29 +21,20 @@
 namespace aphotic {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
-
-template <typename Number>
-double value_at(const char* bytes) {
-    Number number{};
-    std::memcpy(&number, bytes, sizeof number);
-    return static_cast<double>(number);
-}
-
 struct PlyType {
     std::string_view name;
     std::string_view sized_name;
     std::size_t bytes;
-    double (*at)(const char* bytes);
+    double (*at)(const void* bytes);
 };
-constexpr std::array kPlyTypes{PlyType{"char", "int8", 1, value_at<std::int8_t>},
-                               PlyType{"uchar", "uint8", 1, value_at<std::uint8_t>},
-                               PlyType{"short", "int16", 2, value_at<std::int16_t>},
-                               PlyType{"ushort", "uint16", 2, value_at<std::uint16_t>},
-                               PlyType{"int", "int32", 4, value_at<std::int32_t>},
-                               PlyType{"uint", "uint32", 4, value_at<std::uint32_t>},
-                               PlyType{"float", "float32", 4, value_at<float>},
-                               PlyType{"double", "float64", 8, value_at<double>}};
+constexpr std::array kPlyTypes{PlyType{"char", "int8", 1, number_at<std::int8_t, double>},
+                               PlyType{"uchar", "uint8", 1, number_at<std::uint8_t, double>},
+                               PlyType{"short", "int16", 2, number_at<std::int16_t, double>},
+                               PlyType{"ushort", "uint16", 2, number_at<std::uint16_t, double>},
+                               PlyType{"int", "int32", 4, number_at<std::int32_t, double>},
+                               PlyType{"uint", "uint32", 4, number_at<std::uint32_t, double>},
+                               PlyType{"float", "float32", 4, number_at<float, double>},
+                               PlyType{"double", "float64", 8, number_at<double, double>}};
 
 struct PlyProperty {
     std::string_view name;
@@ -120,7 +110,7 @@ class PlyReader {
     }
 
     void read_header() {
-        if (!rest_.starts_with("ply")) fail("found no PLY file; allowed: one that begins with ply");
+        if (!rest_.starts_with("ply")) fail("not a PLY file");
         take_line();
         while (true) {
             const std::string_view line = take_line();
@@ -171,7 +161,7 @@ class PlyReader {
     }
 
     [[noreturn]] void refuse_end() const {
-        fail("the file is cut short: found {} of {} elements '{}'",
+        fail("the file is truncated: found {} of {} elements '{}'",
              place_,
              in_->count,
              printable(in_->name));
@@ -252,7 +242,7 @@ class PlyReader {
         std::vector<int> corners;
         for (const double value : values) {
             if (!(value >= 0.0 && value < vertices && value == std::floor(value)))
-                fail("found vertex {} in face {}; allowed: 0 to {}, for so many stand before it",
+                fail("found vertex {} in face {}; allowed: 0 to {}, the vertices before it",
                      value,
                      place_ + 1,
                      vertices - 1.0);
@@ -270,7 +260,7 @@ class PlyReader {
             mesh_.triangles.insert(mesh_.triangles.end(), triangles.begin(), triangles.end());
         }
         if (mesh_.triangles.size() > most_triangles_)
-            fail("found more than {} triangles; allowed: as many", most_triangles_);
+            fail("found more than {0} triangles; allowed: {0} or fewer", most_triangles_);
     }
 
     const std::string& name_;
