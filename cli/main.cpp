@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -60,7 +61,9 @@ constexpr std::array kCommands{&kInit,
 
 // keeps: what a signal leaves of the work.
 ExitStatus run(const Action& action, const std::string& keeps) {
-    const aphotic::LastWords words(fmt::format("aphotic: interrupted; {}\n", keeps));
+    // On a terminal a line of progress may stand there.
+    const char* const wipe = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+    const aphotic::LastWords words(fmt::format("{}aphotic: interrupted; {}\n", wipe, keeps));
     try {
         const ExitStatus status = action();
         flush_said();

@@ -24,7 +24,7 @@ using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&r
 // Of one thread: images are spread over threads, not their meshes.
 const Device& device() {
     static const Device kDevice(rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
-    if (!kDevice) throw RunError("Embree, which traces rays, cannot be started");
+    if (!kDevice) throw RunError("cannot start Embree, which traces rays");
     return kDevice;
 }
 

@@ -39,7 +39,7 @@ void require_place(const Navigation& navigation, const Place& place, bool is_by_
         if (!std::isfinite(value)) lacking.emplace_back(name);
     if (lacking.empty()) return;
     throw InputError(
-        "{}: found no {} of it; needed by --relief, in columns of these names or by --columns "
+        "{}: found no {} for it; needed by --relief, in columns of these names or by --columns "
         "{}=NAME: metres of the mesh's frame, not degrees",
         navigation.source(),
         fmt::join(lacking, ", "),
@@ -97,10 +97,10 @@ void require_in_view(const Survey& survey) {
             if (why.empty()) why = error.what();
         }
     }
-    if (flown.isEmpty()) throw InputError("--relief: no image has a place over it: {}", why);
+    if (flown.isEmpty()) throw InputError("--relief: no image is over it: {}", why);
     throw InputError(
-        "{}: no image looks at it: found cameras at {}, and the mesh at {}; allowed: one frame for "
-        "both, as --relief-axes and --columns have it",
+        "{}: no image sees it: found cameras at {}, and the mesh at {}; allowed: one frame for "
+        "both, set by --relief-axes and --columns",
         survey.depth->place.string(),
         words_of(flown, mesh.is_by_depth),
         words_of(mesh.scene->box_m(), true));

@@ -35,9 +35,8 @@ void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& m
         "allowed: {}",
         depth_m,
         *altitude_m,
-        survey.depth->mesh
-            ? "a mesh that has the navigation's sea level, or --relief-place altitude"
-            : "depths in metres, or in millimetres with --depth-unit mm");
+        survey.depth->mesh ? "a mesh with the navigation's sea level, or --relief-place altitude"
+                           : "depths in metres, or in millimetres with --depth-unit mm");
 }
 
 DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file, PlaneSize size) {
@@ -49,7 +48,7 @@ DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file, PlaneSize siz
     DepthMap map = survey.depth->mesh->scene->depth_map(
         station_of(survey, file), ray, size.width_px, size.height_px);
     if (std::ranges::none_of(map.depth_m, [](float depth_m) { return std::isfinite(depth_m); }))
-        throw InputError("it looks past {}", survey.depth->place.string());
+        throw InputError("it does not see {}", survey.depth->place.string());
     return map;
 }
 

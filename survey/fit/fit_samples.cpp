@@ -108,7 +108,7 @@ void put_floor(const Survey& survey,
         if (std::isfinite(plane.point_m.z())) depths_m.push_back(plane.point_m.z());
     if (2 * depths_m.size() < image.planes.size()) {
         throw InputError(
-            "found {} of {} blocks of one plane that all strobes see; allowed: half or more",
+            "found {} of {} blocks with one plane that every strobe lights; allowed: half or more",
             depths_m.size(),
             image.planes.size());
     }

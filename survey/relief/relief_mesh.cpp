@@ -24,9 +24,8 @@ void require_room(const HeightGrid& grid) {
     const std::size_t triangles = 2 * size_of(grid.width) * size_of(grid.height);
     if (triangles <= kMostReliefTriangles) return;
     throw InputError(
-        "found {} x {} heights; allowed: {} in all, as of a part (`gdalwarp -te`) or of larger "
-        "cells "
-        "(`gdalwarp -tr`)",
+        "found {} x {} heights; allowed: {} in all: cut out a part (`gdalwarp -te`) or use "
+        "larger cells (`gdalwarp -tr`)",
         grid.width,
         grid.height,
         kMostReliefTriangles / 2);
@@ -63,7 +62,8 @@ Mesh mesh_of(const HeightGrid& grid) {
     }
     if (mesh.triangles.empty())
         throw InputError(
-            "found no three known heights beside each other among {} x {}; allowed: some",
+            "found no three adjacent known heights in a grid of {} x {}; allowed: at least one "
+            "triangle",
             grid.width,
             grid.height);
     return mesh;

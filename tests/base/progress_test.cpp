@@ -4,6 +4,8 @@
 #include "support/has.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace aphotic::progress_test {
 namespace {
@@ -46,6 +48,23 @@ TEST(Progress, IsSilentUntilItIsDue) {
                   line.wipe();
               }),
               "");
+}
+
+// For the whole process, so in one of its own.
+TEST(Progress, IsHushed) {
+    const std::string printed = printed_by([] {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            hush_progress();
+            ProgressLine line(1ms);
+            line.show("rendering", 0.25);
+            std::this_thread::sleep_for(50ms);
+            line.show("rendering", 0.5);
+            ::_exit(0);
+        }
+        ::waitpid(child, nullptr, 0);
+    });
+    EXPECT_EQ(printed, "");
 }
 
 // What share is left is that of the part under way, not of all that went before.

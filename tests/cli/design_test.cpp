@@ -43,7 +43,10 @@ Arguments tilts_into(const std::string& folder) {
 // A design that is designed again starts at the figures that the first ended with.
 TEST_F(CommandDesign, LeavesARigThatIsAsEvenAsItSays) {
     done(design("rig.toml", tilts_into("out")));
-    EXPECT_TRUE(fs::exists(path("out/report.html")));
+    // The start's tilts as the rig has them, and the strobes from two sides.
+    const std::string page = text_of("out/report.html");
+    for (const char* part : {"26.0° to 180°", "28.0° to 90°", "id=\"above\"", "id=\"side\""})
+        EXPECT_TRUE(has(page, part)) << part;
     const nlohmann::json found = numbers("out");
     EXPECT_GT(found["design"]["worst"]["evenness"], found["start"]["worst"]["evenness"]);
     EXPECT_GE(found["design"]["worst"]["coverage"], found["start"]["worst"]["coverage"]);

@@ -9,6 +9,7 @@
 #include "support/command_test.h"
 #include "support/fit_rig.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -153,7 +155,8 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
                                    "id=\"beam-0\"",
                                    "within twice its standard error",
                                    "id=\"brightness\"",
-                                   "The starting rig"})
+                                   "The starting rig",
+                                   "aphotic fit rig.toml --images survey/raw --nav survey/"})
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
     // What fit.json and the terminal name, the page does, too.
     for (const Json& one : json.at("numbers")) {
@@ -188,7 +191,7 @@ TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
     const CommandResult run = done(aphotic(fit), "splines fitted to 17 images\n");
     EXPECT_TRUE(has(run.err, "000003.tif: found no depth map for it in survey/depth; allowed: "));
     EXPECT_TRUE(has(run.err,
-                    "000005.tif: found 36 of 108 blocks of one plane that all strobes see; "
+                    "000005.tif: found 36 of 108 blocks with one plane that every strobe lights; "
                     "allowed: half or more; skipped"));
     EXPECT_TRUE(has(run.err, "000007.tif: strobe aft did not fire"));
     const Json aim = number("strobe.fore.aim_along_deg");
@@ -204,7 +207,7 @@ TEST_F(CommandFit, TakesTheFloorOfEachImageFromItsDepthMap) {
     }
 }
 
-// A level mesh of two triangles, over which each image stands at its altitude.
+// A level mesh 20 m deep, over which each image is placed by its depth; altitudes are wrong.
 TEST_F(CommandFit, TakesTheFloorFromAMesh) {
     FitRigNumbers numbers = of_few_pixels();
     numbers.fore_tilt_deg += 2.0;
@@ -214,16 +217,14 @@ TEST_F(CommandFit, TakesTheFloorFromAMesh) {
                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
                "end_header\n-50 -50 -20\n50 -50 -20\n50 50 -20\n-50 50 -20\n4 0 1 2 3\n");
-    std::string nav = replaced(
-        text_of("survey/navigation.txt"), "roll_deg\n", "roll_deg,east_m,north_m,heading_deg\n");
-    for (std::size_t at = nav.find('\n') + 1; (at = nav.find('\n', at)) != std::string::npos;) {
-        constexpr std::string_view kPlace = ",3,4,30";
-        nav.insert(at, kPlace);
-        at += kPlace.size() + 1;
-    }
+    std::istringstream flown(text_of("survey/navigation.txt"));
+    std::string image;
+    std::getline(flown, image);  // the header
+    std::string nav = "image,altitude_m,pitch_deg,roll_deg,east_m,north_m,heading_deg,depth_m\n";
+    for (std::string rest; std::getline(flown, image, ',') && std::getline(flown, rest);)
+        nav += fmt::format("{},3.5,0,0,3,4,30,{}\n", image, 20.0 - std::stod(rest));
     write_file(path("nav.csv"), nav);
-    done(aphotic("fit rig.toml --images survey/raw --nav nav.csv --relief level.ply "
-                 "--relief-place altitude -o fitted" +
+    done(aphotic("fit rig.toml --images survey/raw --nav nav.csv --relief level.ply -o fitted" +
                  kCamera + "--blocks 12"),
          "splines fitted to 16 images\n");
     const Json aim = number("strobe.fore.aim_along_deg");
@@ -231,6 +232,10 @@ TEST_F(CommandFit, TakesTheFloorFromAMesh) {
     EXPECT_NEAR(
         aim.at("value").get<double>(), 2.0 * std::cos(std::atan2(0.1, 0.5)), kSigmas * error_deg);
     EXPECT_LT(error_deg, 0.5);
+    const Json water = number("water.multiple");
+    EXPECT_NEAR(water.at("value").get<double>(), 1.0, kSigmas * water.at("error").get<double>());
+    for (const Json& one : json_in("fitted/fit.json").at("images"))
+        EXPECT_EQ(one.at("altitude_off_m").get<double>(), 0.0);
 }
 
 // A lamp of a millionth of the light has no aim that anybody sees.

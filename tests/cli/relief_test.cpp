@@ -406,9 +406,9 @@ TEST_F(CommandMesh, WhatCannotBeIsRefused) {
         {Arguments(correct + "--nav place.csv --relief step.ply --depth-map axis"), "--depth-map"},
         {Arguments(correct + "--nav place.csv --relief-axes east-north-up"), "--relief"},
         {Arguments(correct + "--nav nav.csv --relief step.ply"),
-         "nav.csv: found no east_m, north_m, heading_deg of it; needed by --relief"},
+         "nav.csv: found no east_m, north_m, heading_deg for it; needed by --relief"},
         {Arguments(correct + "--nav far.csv --relief step.ply"),
-         "step.ply: no image looks at it: found cameras at east 12.0 to 12.0 m, north 7.0 to 7.0 "
+         "step.ply: no image sees it: found cameras at east 12.0 to 12.0 m, north 7.0 to 7.0 "
          "m, "
          "and the mesh at east 500297.0 to 500303.0 m"},
         {Arguments(correct + "--nav place.csv --relief step.txt"), "found the extension '.txt'"},

@@ -14,6 +14,8 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,6 +103,24 @@ TEST(Exr, ReadsTheChannelsThatAreNamedInTheirOrder) {
     in.read_rows(4, 1, names, samples);
     EXPECT_EQ(samples.front(), sample_at(1, 4, 0));
     EXPECT_EQ(samples.back(), sample_at(0, 4, kWidth - 1));
+}
+
+// By OpenEXR: primaries where there are colours, and who wrote it.
+TEST(Exr, SaysWhatItsNumbersMean) {
+    const TempFolder folder;
+    const auto header_of = [&](const std::vector<std::string>& channels) {
+        const fs::path file = folder.path() / (channels.front() + ".exr");
+        ExrWriter out(file, 1, 1, channels, {});
+        out.write_rows(1, std::vector<float>(channels.size(), 0.5F));
+        out.finish();
+        return Imf::InputFile(file.c_str()).header();
+    };
+    const Imf::Header colours = header_of({"R", "G", "B"});
+    ASSERT_TRUE(Imf::hasChromaticities(colours));
+    EXPECT_EQ(Imf::chromaticities(colours).red, Imath::V2f(0.64F, 0.33F));  // Rec. 709
+    EXPECT_EQ(colours.typedAttribute<Imf::StringAttribute>("software").value().substr(0, 8),
+              "Aphotic ");
+    EXPECT_FALSE(Imf::hasChromaticities(header_of({"Y"})));
 }
 
 TEST(Exr, KeepsTextAttributes) {

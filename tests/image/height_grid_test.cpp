@@ -95,7 +95,7 @@ TEST_F(HeightGrids, ThatAreNoneOfMetresSayWhy) {
     EXPECT_TRUE(has(refusal(feet), "the unit 9003 of its heights"));
     GeoTiffText nowhere = kUtm;
     nowhere.tie.clear();
-    EXPECT_TRUE(has(refusal(nowhere), "found no place of its pixels on the map"));
+    EXPECT_TRUE(has(refusal(nowhere), "found no georeference"));
     GeoTiffText flat = kUtm;
     flat.scale = {0.0, 1.0, 0.0};
     EXPECT_TRUE(has(refusal(flat), "found pixels of 0 x 1 m"));
@@ -118,7 +118,7 @@ TEST_F(HeightGrids, WithoutAPlaceAreJustImages) {
         folder_.path() / "plain.tif",
         {.width_px = 2, .height_px = 1, .channels = {"Y"}, .planes = std::vector<float>(2)});
     EXPECT_TRUE(has(refusal_of([&] { (void)read_height_grid(folder_.path() / "plain.tif"); }),
-                    "plain.tif: found no place of its pixels on the map"));
+                    "plain.tif: found no georeference"));
 }
 
 }  // namespace

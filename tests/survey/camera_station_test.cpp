@@ -74,7 +74,7 @@ std::string refusal(const Place& place, bool is_by_depth) {
 TEST(CameraStation, WithoutAPlaceIsToldWhatIsNeeded) {
     EXPECT_TRUE(
         has(refusal({}, true),
-            "nav.csv: found no east_m, north_m, heading_deg, depth_m of it; needed by --relief"));
+            "nav.csv: found no east_m, north_m, heading_deg, depth_m for it; needed by --relief"));
     Place place = kPlace;
     place.depth_m = Place{}.depth_m;
     EXPECT_TRUE(has(refusal(place, true), "found no depth_m of it"));
@@ -96,14 +96,13 @@ std::string unseen(const Place& place, bool is_by_depth) {
 TEST(CameraStation, AFlightThatSeesNothingIsToldBothBoxes) {
     EXPECT_EQ(unseen(kPlace, true), kAccepted);
     EXPECT_EQ(unseen(kPlace, false), kAccepted);
-    EXPECT_TRUE(
-        has(unseen({}, false), "--relief: no image has a place over it: nav.csv: found no east_m"));
+    EXPECT_TRUE(has(unseen({}, false), "--relief: no image is over it: nav.csv: found no east_m"));
     Place local = kPlace;
     local.east_m = 12.0;
     local.north_m = -3.0;
     EXPECT_TRUE(
         has(unseen(local, true),
-            "reef.ply: no image looks at it: found cameras at east 12.0 to 12.0 m, north -3.0 to "
+            "reef.ply: no image sees it: found cameras at east 12.0 to 12.0 m, north -3.0 to "
             "-3.0 m, depth 100.5 to 100.5 m, and the mesh at east 499992.0 to 500008.0 m, north "
             "4999992.0 to 5000008.0 m, depth 100.6 to 105.4 m"));
     EXPECT_TRUE(has(unseen(local, false), "north -3.0 to -3.0 m, and the mesh"));
@@ -111,7 +110,7 @@ TEST(CameraStation, AFlightThatSeesNothingIsToldBothBoxes) {
     under.depth_m = -100.5;
     EXPECT_EQ(unseen(under, true), kAccepted);  // 200 m over it: another check tells
     under.depth_m = 110.0;
-    EXPECT_TRUE(has(unseen(under, true), "no image looks at it"));
+    EXPECT_TRUE(has(unseen(under, true), "no image sees it"));
 }
 
 }  // namespace

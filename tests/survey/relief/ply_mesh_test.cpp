@@ -63,12 +63,12 @@ TEST(PlyMesh, IsReadFromBytes) {
     EXPECT_EQ(mesh.vertices_m[3], Eigen::Vector3d(0.0, 2.0, -6.0));
     EXPECT_EQ(mesh.triangles.size(), 2U);
     EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 3)),
-                    "a.ply: the file is cut short: found 0 of 1 elements 'edge'"));
+                    "a.ply: the file is truncated: found 0 of 1 elements 'edge'"));
     EXPECT_TRUE(has(refusal(ply.substr(0, ply.size() - 30)), "found 3 of 4 elements 'vertex'"));
 }
 
 TEST(PlyMesh, ThatCannotBeSaysWhy) {
-    EXPECT_EQ(refusal("obj"), "a.ply: found no PLY file; allowed: one that begins with ply");
+    EXPECT_EQ(refusal("obj"), "a.ply: not a PLY file");
     EXPECT_TRUE(has(refusal("ply\nformat ascii 1.0\n"), "the file ends within its header"));
     EXPECT_TRUE(
         has(refusal(with("ascii", "binary_big_endian")), "found 'format binary_big_endian 1.0"));
@@ -80,7 +80,7 @@ TEST(PlyMesh, ThatCannotBeSaysWhy) {
     EXPECT_TRUE(
         has(refusal(with("3 0 2 3", "3 0 2 4")), "found vertex 4 in face 2; allowed: 0 to 3"));
     EXPECT_TRUE(has(refusal(with("3 0 2 3", "2 0 2")), "found face 2 of 2 corners"));
-    EXPECT_TRUE(has(refusal(with("3 0 2 3", "")), "cut short: found 1 of 2 elements 'face'"));
+    EXPECT_TRUE(has(refusal(with("3 0 2 3", "")), "truncated: found 1 of 2 elements 'face'"));
     EXPECT_TRUE(has(refusal(with("face 2", "face 0")), "found 4 vertices and no faces"));
     EXPECT_TRUE(has(refusal(std::string(kAscii), 1), "more than 1 triangles"));
     EXPECT_TRUE(has(refusal(with("element vertex 4", "element vertex 99999999999999999999")),

@@ -43,7 +43,8 @@ TEST(ReliefMesh, OfAGridCoversWhatIsKnown) {
     grid.height_m[9] = kNone;
     EXPECT_EQ(area_of(mesh_of(grid)), 4.0);
     grid.height_m.assign(12, kNone);
-    EXPECT_TRUE(has(refusal_of([&] { (void)mesh_of(grid); }), "found no three known heights"));
+    EXPECT_TRUE(
+        has(refusal_of([&] { (void)mesh_of(grid); }), "found no three adjacent known heights"));
     grid.width = 20000;
     grid.height = 20000;
     EXPECT_TRUE(has(refusal_of([&] { (void)mesh_of(grid); }), "found 20000 x 20000 heights"));
