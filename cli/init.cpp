@@ -10,13 +10,14 @@
 #include "cli/outcome.h"
 #include "cli/terminal.h"
 #include "rig/file/rig_template.h"
+#include "rig/file/rig_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
@@ -30,21 +31,14 @@ struct InitOptions {
     bool json = false;
 };
 
-struct TemplateCopy {
-    fs::path file;
-    std::string_view text;
-};
-
-void require_new(const std::vector<TemplateCopy>& copies) {
-    for (const TemplateCopy& copy : copies) {
-        if (fs::exists(copy.file) && read_text_file(copy.file) != copy.text)
-            throw InputError("{}: exists; allowed: a new file", copy.file.string());
-    }
+// There with the same text is as good.
+void require_new(const fs::path& file, std::string_view text) {
+    if (fs::exists(file) && read_text_file(file) != text)
+        throw InputError("{}: exists; allowed: a new file", file.string());
 }
 
 struct BegunRig {
-    fs::path rig;
-    std::vector<fs::path> files;  // the rig among them
+    std::vector<fs::path> files;  // the rig last
     std::size_t guesses = 0;
 };
 
@@ -60,21 +54,29 @@ void print(const BegunRig& begun) {
     say("{} lines are guesses, marked `measure`. Next:\n"
         "  aphotic plan {}\n",
         begun.guesses,
-        shell_word(begun.rig.string()));
+        shell_word(begun.files.back().string()));
 }
 
+// Its title is the file's name.
+std::string titled(const std::string& rig, const fs::path& file) {
+    RigText text(rig, file.string(), file.parent_path());
+    text.set("title", file.stem().string());
+    return text.text();
+}
+
+// What the rig names is there before the rig.
 ExitStatus begin_rig(const InitOptions& options) {
     const RigTemplate chosen = rig_template(options.like);
     const fs::path file = options.file;
-    std::vector<TemplateCopy> copies{{file, chosen.rig}};
-    for (const auto& [name, text] : chosen.files)
-        copies.push_back({file.parent_path() / name, text});
-    require_new(copies);
-    BegunRig begun{.rig = file, .files = {}, .guesses = unmeasured_lines(chosen.rig).size()};
-    for (const TemplateCopy& copy : copies) {
-        write_text_file(copy.file, copy.text);
-        begun.files.push_back(copy.file);
-    }
+    BegunRig begun{.files = {}, .guesses = unmeasured_lines(chosen.rig).size()};
+    for (const auto& [name, text] : chosen.files) begun.files.push_back(file.parent_path() / name);
+    for (std::size_t i = 0; i < begun.files.size(); ++i)
+        require_new(begun.files[i], chosen.files[i].csv);
+    require_new(file, "");
+    for (std::size_t i = 0; i < begun.files.size(); ++i)
+        write_text_file(begun.files[i], chosen.files[i].csv);
+    begun.files.push_back(file);
+    write_text_file(file, titled(chosen.rig, file));
     show(begun, options.json);
     return kDone;
 }

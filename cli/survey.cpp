@@ -83,7 +83,7 @@ void print(const MadeSurvey& made) {
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
         "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers per electron\n"
-        "  {}, and as instruments measure it {}\n",
+        "  {}, and as instruments measure it {}, by the time of each image {}\n",
         survey.rig.title,
         counted(survey.legs.size(), "image"),
         folder,
@@ -92,7 +92,8 @@ void print(const MadeSurvey& made) {
         camera.white_dn,
         camera.gain_dn_per_e,
         (survey.folder / "navigation.txt").string(),
-        (survey.folder / "navigation-measured.txt").string());
+        (survey.folder / "navigation-measured.txt").string(),
+        (survey.folder / "navigation-timed.txt").string());
     const TruthAsked& truth = survey.truth;
     for (const auto& [is_asked, where, what] :
          {std::tuple{truth.depth, "depth", "depths along the camera's axis"},

@@ -24,6 +24,7 @@ namespace {
 
 using aphotic::HeightGrid;
 using aphotic::InputError;
+using aphotic::number_at;
 using aphotic::size_of;
 
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();

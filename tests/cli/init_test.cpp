@@ -23,6 +23,7 @@ TEST_F(Init, PlanListsWhatIsNotMeasured) {
               nlohmann::json::parse(R"({"files": ["same.toml"], "guesses": 20})"));
     const auto lines = json_by("plan my-rig.toml --json").at("unmeasured");
     EXPECT_EQ(lines.size(), 20U);
+    EXPECT_EQ(json_by("plan my-rig.toml --json").at("rig_title"), "my-rig");
     EXPECT_EQ(lines.at(1).at("text"), "pixel_pitch_um  = 6.45");
     write_file(path("my-rig.toml"), replaced(text_of("my-rig.toml"), "  # measure:", "  #"));
     EXPECT_FALSE(has(done("plan my-rig.toml").out, "Still guesses"));

@@ -421,7 +421,7 @@ TEST_F(CommandMesh, WhatCannotBeIsRefused) {
                            kEast_m,
                            kNorth_m));
     refused(Arguments(correct + "--nav deep.csv --relief step.ply"),
-            "allowed: a mesh that has the navigation's sea level");
+            "allowed: a mesh with the navigation's sea level");
 }
 
 TEST_F(CommandRelief, MapsThatCannotBeAreRefused) {
