@@ -77,7 +77,7 @@ TEST(CameraStation, WithoutAPlaceIsToldWhatIsNeeded) {
             "nav.csv: found no east_m, north_m, heading_deg, depth_m for it; needed by --relief"));
     Place place = kPlace;
     place.depth_m = Place{}.depth_m;
-    EXPECT_TRUE(has(refusal(place, true), "found no depth_m of it"));
+    EXPECT_TRUE(has(refusal(place, true), "found no depth_m for it; needed by --relief"));
     EXPECT_EQ(refusal(place, false), kAccepted);
     place.east_m += 100.0;
     EXPECT_TRUE(has(refusal(place, false),
