@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/beam_light.h"
 
+#include "light/lane_ray.h"
+
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -27,7 +29,9 @@ Beam even_light_behind(const BeamWindow& window) {
 }  // namespace
 
 BeamLight::BeamLight(const Beam& beam, const Vector3d& axis)
-    : beam_(beam), frame_(frame_about(axis)) {
+    : beam_(beam),
+      frame_(frame_about(axis)),
+      has_edge_(!edges_rad(beam).empty() || has_rim(beam)) {
     if (is_round(beam)) {
         profile_.emplace(beam);
         return;
@@ -44,20 +48,19 @@ BeamLight::BeamLight(const Beam& beam, const Vector3d& axis)
     if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) cells_.emplace(*table);
 }
 
-double BeamLight::at(const Vector3d& towards) const {
-    if (!profile_) return intensity_towards(beam_, frame_, towards);
-    return profile_->at(frame_.axis.dot(towards) / towards.norm());
-}
-
-Lanes BeamLight::at(const LaneVector& towards, const Lanes& length) const {
-    if (!profile_ && !window_factor_) return of_pattern(towards, length);
+Lanes BeamLight::cosine(const LaneVector& towards, const Lanes& length) const {
     Lanes cosine;
     for_each_pack([&](std::size_t k) {
         cosine.set_pack(k, dot(frame_.axis, pack(towards, k)) / length.pack(k));
     });
-    if (profile_) return profile_->at(cosine);
+    return cosine;
+}
+
+Lanes BeamLight::at(const LaneVector& towards, const Lanes& length) const {
+    if (profile_) return profile_->at(cosine(towards, length));
     Lanes I = of_pattern(towards, length);
-    const Lanes factor = window_factor_->at(cosine);
+    if (!window_factor_) return I;
+    const Lanes factor = window_factor_->at(cosine(towards, length));
     for (std::size_t k = 0; k < kLanes; ++k) I[k] *= factor[k];
     return I;
 }
@@ -83,10 +86,17 @@ Lanes BeamLight::of_pattern(const LaneVector& towards, const Lanes& length) cons
     return I;
 }
 
-double BeamLight::continued(const Vector3d& towards, const Vector3d& from) const {
-    if (!profile_) return continued_intensity(beam_, frame_, towards, from);
-    return profile_->continued(frame_.axis.dot(towards) / towards.norm(),
-                               frame_.axis.dot(from) / from.norm());
+Lanes BeamLight::continued(const LaneVector& towards,
+                           const Lanes& length,
+                           const LaneVector& from,
+                           const Lanes& from_length) const {
+    if (!has_edge_) return at(towards, length);
+    if (profile_) return profile_->continued(cosine(towards, length), cosine(from, from_length));
+    Lanes I;
+    for (std::size_t k = 0; k < kLanes; ++k)
+        I[k] = continued_intensity(
+            beam_, frame_, vector_of_lane(towards, k), vector_of_lane(from, k));
+    return I;
 }
 
 BeamEdges::BeamEdges(const Strobe& strobe) : beam_(strobe.beam), frame_(frame_about(strobe.axis)) {

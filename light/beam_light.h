@@ -28,19 +28,23 @@ class BeamLight {
   public:
     BeamLight(const Beam& beam, const Eigen::Vector3d& axis);
 
-    [[nodiscard]] double at(const Eigen::Vector3d& towards) const;
     // For directions of these lengths.
     [[nodiscard]] Lanes at(const LaneVector& towards, const Lanes& length) const;
-    // As if the edge that lights the direction `from` were not there (continued_intensity()).
-    [[nodiscard]] double continued(const Eigen::Vector3d& towards,
-                                   const Eigen::Vector3d& from) const;
+    // As if the edges that light the directions `from` were not there (continued_intensity()).
+    [[nodiscard]] Lanes continued(const LaneVector& towards,
+                                  const Lanes& length,
+                                  const LaneVector& from,
+                                  const Lanes& from_length) const;
 
   private:
     // Without the window's transmission.
     [[nodiscard]] Lanes of_pattern(const LaneVector& towards, const Lanes& length) const;
 
+    [[nodiscard]] Lanes cosine(const LaneVector& towards, const Lanes& length) const;
+
     Beam beam_;
     BeamFrame frame_;
+    bool has_edge_;
     std::optional<RoundProfile> profile_;  // of a beam that is round
     // For others, whose frame is rotated like the pattern.
     BeamFrame pattern_frame_;

@@ -58,30 +58,6 @@ struct FloorArrival {
     double path_m = 0.0;
 };
 
-// intensity(V): I. Nothing for a ray that sees no floor, and no path where there is no light.
-template <typename Intensity>
-[[nodiscard]] FloorArrival arrival(const Seafloor& floor,
-                                   const Eigen::Vector3d& lamp_m,
-                                   double lamp_height_m,
-                                   double share,
-                                   const FloorRay& ray,
-                                   const Intensity& intensity) {
-    FloorArrival light;
-    if (!ray.sees_floor()) return light;
-    light.towards = towards(lamp_m, ray);
-    const double I = intensity(light.towards);
-    if (I == 0.0) return light;
-    const double length = light.towards.norm();
-    const Arriving<double> even = arriving(lamp_height_m, ray.height_m, ray.down, length);
-    light.diffuse = share * I * even.per_area;
-    light.path_m = even.path_m;
-    if (floor.phong == 0.0) return light;
-    light.highlight = share * I *
-                      highlight_per_area(
-                          floor, lamp_height_m, ray.down, ray.direction.dot(light.towards), length);
-    return light;
-}
-
 // For a strobe as a point, whose beam has no edge between this ray and a place that it certainly
 // lights; nothing if the ray sees no floor, and no light from a lamp that is not above it.
 [[nodiscard]] std::optional<FloorArrival> arrival_of(const Rig& rig,

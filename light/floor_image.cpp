@@ -26,8 +26,9 @@ class FloorTiles : public TileLight {
   public:
     using Piece = LampCrease;
     using Group = std::vector<const FloorLamp*>;
-    using Place = PlaceRays;
-    using Found = PlaceLight;
+    using Place = LaneRays;
+    using Found = LaneLight;
+    static constexpr std::size_t kLanes = aphotic::kLanes;
 
     explicit FloorTiles(const FloorLight& light) : light_(light) {}
 
@@ -50,16 +51,23 @@ class FloorTiles : public TileLight {
         for (const FloorLamp* lamp : lamps) rest.push_back({.lamp = lamp});
     }
 
-    [[nodiscard]] PlaceRays place(const std::array<PixelPlace, 1>& at, bool is_exact) const {
-        return light_.rays_at(at[0][0], at[0][1], is_exact);
+    [[nodiscard]] LaneRays place(const std::array<PixelPlace, kLanes>& at, bool is_exact) const {
+        Lanes column;
+        Lanes row;
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            column[k] = at[k][0];
+            row[k] = at[k][1];
+        }
+        return light_.rays_at(column, row, is_exact);
     }
 
-    [[nodiscard]] PlaceLight find(const Group& lamps, const PlaceRays& rays, bool is_exact) const {
-        PlaceLight light;
-        for (const FloorLamp* lamp : lamps)
-            light_.add(*lamp, rays, is_exact && light_.has_port(), light);
-        return light;
+    [[nodiscard]] LaneLight find(const Group& lamps, const LaneRays& rays, bool /*is_exact*/) const {
+        LaneLight found;
+        for (const FloorLamp* lamp : lamps) light_.add(*lamp, rays, found);
+        return found;
     }
+
+    static PlaceLight of_lane(const LaneLight& found, std::size_t k) { return found.of_lane(k); }
 
     static bool is_within(const PlaceLight& light) { return !light.is_before && !light.is_beyond; }
 
@@ -76,20 +84,14 @@ class FloorTiles : public TileLight {
     void settle(const Group& lamps,
                 double column,
                 double row,
-                const PlaceRays& rays,
+                const LaneRays& /*rays*/,
                 const PlaceSignals& signals,
                 PlaceLight& light) {
-        note(light);
-        Signals all = light.signals;
-        for (std::size_t c = 0; c < kChannels; ++c) all[c] += signals[c];
-        if (is_in_doubt(light, all)) light.signals = light_.dispersed(lamps, column, row, rays);
-    }
-
-  protected:
-    [[nodiscard]] const FloorLight& light() const { return light_; }
-    void note(const PlaceLight& light) {
         outside_.is_before |= light.is_before;
         outside_.is_beyond |= light.is_beyond;
+        Signals all = light.signals;
+        for (std::size_t c = 0; c < kChannels; ++c) all[c] += signals[c];
+        if (is_in_doubt(light, all)) light.signals = light_.dispersed(lamps, column, row);
     }
 
   private:
@@ -97,50 +99,11 @@ class FloorTiles : public TileLight {
     Outside outside_;
 };
 
-// The same for a camera without a port, in lanes.
-class FloorLanes : public FloorTiles {
-  public:
-    static constexpr std::size_t kLanes = aphotic::kLanes;
-    using Place = LaneRays;
-    using Found = LaneLight;
-    using FloorTiles::FloorTiles;
-
-    [[nodiscard]] LaneRays place(const std::array<PixelPlace, kLanes>& at,
-                                 bool /*is_exact*/) const {
-        Lanes column;
-        Lanes row;
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            column[k] = at[k][0];
-            row[k] = at[k][1];
-        }
-        return light().rays_at(column, row);
-    }
-
-    [[nodiscard]] LaneLight find(const Group& lamps,
-                                 const LaneRays& rays,
-                                 bool /*is_exact*/) const {
-        LaneLight found;
-        for (const FloorLamp* lamp : lamps) light().add(*lamp, rays, found);
-        return found;
-    }
-
-    static PlaceLight of_lane(const LaneLight& found, std::size_t k) { return found.of_lane(k); }
-
-    void settle(const Group& /*lamps*/,
-                double /*column*/,
-                double /*row*/,
-                const LaneRays& /*rays*/,
-                const PlaceSignals& /*signals*/,
-                const PlaceLight& light) {
-        note(light);
-    }
-};
-
 // The rays of a tile's places at all nodes, the middle one first.
 std::vector<FloorRay> rays_of(const FloorLight& light, const Tile& tile) {
     std::vector<FloorRay> rays;
     for (const auto& [x, y] : tile_places(tile.width, tile.height)) {
-        const PlaceRays all = light.rays_at(tile.column + x + 0.5, tile.row + y + 0.5, false);
+        const PlaceRays all = light.rays_at(tile.column + x + 0.5, tile.row + y + 0.5);
         rays.insert(rays.end(), all.begin(), all.begin() + (light.has_port() ? kIndexNodes : 1));
     }
     return rays;
@@ -166,21 +129,6 @@ std::vector<FloorTiles::Group> FloorTiles::split(const Tile& tile,
     return smooth.empty() ? std::vector<Group>{} : std::vector<Group>{smooth};
 }
 
-template <class Tiles>
-Outside paint_by(const FloorLight& light,
-                 const std::vector<LampCrease>& lamps,
-                 int threads,
-                 const ImageRows& rows) {
-    std::vector<Tiles> by_thread(static_cast<std::size_t>(threads), Tiles(light));
-    paint_tiles(by_thread, lamps, kFloorTile_px, rows);
-    Outside all;
-    for (const Tiles& one : by_thread) {
-        all.is_before |= one.outside().is_before;
-        all.is_beyond |= one.outside().is_beyond;
-    }
-    return all;
-}
-
 }  // namespace
 
 Outside paint_floor(const FloorLight& light, int threads, const ImageRows& rows) {
@@ -190,8 +138,14 @@ Outside paint_floor(const FloorLight& light, int threads, const ImageRows& rows)
         for (const Crease& crease : light.creases(lamp))
             lamps.push_back({.lamp = &lamp, .crease = &crease});
     }
-    return light.has_port() ? paint_by<FloorTiles>(light, lamps, threads, rows)
-                            : paint_by<FloorLanes>(light, lamps, threads, rows);
+    std::vector<FloorTiles> by_thread(static_cast<std::size_t>(threads), FloorTiles(light));
+    paint_tiles(by_thread, lamps, kFloorTile_px, rows);
+    Outside all;
+    for (const FloorTiles& one : by_thread) {
+        all.is_before |= one.outside().is_before;
+        all.is_beyond |= one.outside().is_beyond;
+    }
+    return all;
 }
 
 }  // namespace aphotic

@@ -25,7 +25,7 @@
 //
 //   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
 //
-// For a camera without a port, places are computed in lanes (base/lanes.h).
+// Places are computed in lanes (base/lanes.h).
 //
 // A beam's edge, which dispersion spreads over several pixels, is sharp and located by the middle
 // index.
@@ -36,6 +36,7 @@
 #include "light/floor_arrival.h"
 #include "light/floor_ray.h"
 #include "light/index_nodes.h"
+#include "light/lane_ray.h"
 #include "light/ray_table.h"
 #include "light/signal_table.h"
 #include "light/steep_crease.h"
@@ -54,9 +55,16 @@ namespace aphotic {
 
 inline constexpr double kMostDoubt = 1e-5;
 
-// For the middle index, the first and the last; then halfway between the middle and either.
+// The rays of a place at the index nodes, the middle one first; without a port only that one counts.
+using PlaceRays = std::array<FloorRay, kIndexNodes>;
+
+// Of kLanes places: the nodes' rays in the same order, then, if requested, those halfway between
+// the middle node and either end.
 inline constexpr std::size_t kLooks = 2 * kIndexNodes - 1;
-using PlaceRays = std::array<FloorRay, kLooks>;
+struct LaneRays {
+    std::size_t count;
+    std::array<LaneRay, kLooks> ray;
+};
 
 // Their wavelengths: for a camera without a port only the first.
 [[nodiscard]] std::vector<double> place_rays_nm(const Rig& rig);
@@ -69,12 +77,12 @@ class CameraRays {
     CameraRays(const Rig& rig, double lambda_nm, int threads);
 
     [[nodiscard]] std::size_t nodes() const { return has_port_ ? kIndexNodes : 1; }
-    // At pixels' centres and between them. The rays halfway between nodes only if requested.
-    [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
-    // Directions in air.
-    [[nodiscard]] LaneVector in_air(const Lanes& column, const Lanes& row) const {
-        return table_.look(column, row);
-    }
+    // At pixels' centres and between them.
+    [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor) const;
+    [[nodiscard]] LaneRays at(const Lanes& column,
+                              const Lanes& row,
+                              const LanePlane& floor,
+                              bool looks) const;
 
   private:
     bool has_port_;  // whose rays differ
@@ -83,7 +91,7 @@ class CameraRays {
 
 struct FloorLamp {
     Eigen::Vector3d position_m;
-    double floor_m = 0.0;  // its height
+    Lanes floor_m;  // its height over each lane's floor; 0: it does not light the lane
     double share = 0.0;
     std::size_t strobe = 0;
 };
@@ -97,18 +105,18 @@ struct PlaceLight {
     bool is_beyond = false;  // or longer
 };
 
-// Places seen by a camera without a port: its rays start at the pupil.
-struct LaneRays {
-    LaneVector direction;
-    Lanes down;  // 0 where it sees no floor
-};
+using LaneSignals = std::array<Lanes, kChannels>;
 struct LaneLight {
-    std::array<Lanes, kChannels> signals{};
+    LaneSignals signals{};
+    LaneSignals doubts{};
+    std::array<bool, kLanes> crosses{};
     bool is_before = false;  // of any lane
     bool is_beyond = false;
 
     [[nodiscard]] PlaceLight of_lane(std::size_t k) const {
         return {.signals = {signals[0][k], signals[1][k], signals[2][k]},
+                .doubts = {doubts[0][k], doubts[1][k], doubts[2][k]},
+                .crosses = crosses[k],
                 .is_before = is_before,
                 .is_beyond = is_beyond};
     }
@@ -124,22 +132,24 @@ class FloorLight {
         return strobes_[lamp.strobe].creases;
     }
     [[nodiscard]] bool has_port() const { return rays_.nodes() > 1; }
-    [[nodiscard]] PlaceRays rays_at(double column, double row, bool looks) const {
-        return rays_.at(column, row, floor_, looks);
+    [[nodiscard]] PlaceRays rays_at(double column, double row) const {
+        return rays_.at(column, row, floor_);
     }
-    // On a plane other than the sled's floor.
-    [[nodiscard]] PlaceRays rays_at(double column, double row, const Plane& plane) const {
-        return rays_.at(column, row, plane, false);
+    [[nodiscard]] LaneRays rays_at(const Lanes& column, const Lanes& row, bool looks) const {
+        return rays_.at(column, row, lane_floor_, looks);
+    }
+    // On planes other than the sled's floor.
+    [[nodiscard]] LaneRays rays_at(const Lanes& column,
+                                   const Lanes& row,
+                                   const LanePlane& planes) const {
+        return rays_.at(column, row, planes, false);
     }
     // Adds a lamp's light, with its doubts if the halfway rays were computed.
-    void add(const FloorLamp& lamp, const PlaceRays& rays, bool looks, PlaceLight& light) const;
-    [[nodiscard]] LaneRays rays_at(const Lanes& column, const Lanes& row) const;
     void add(const FloorLamp& lamp, const LaneRays& rays, LaneLight& light) const;
-    // With a ray for each wavelength, for all these lamps.
+    // With a ray for each wavelength, for all these lamps, at one place.
     [[nodiscard]] Signals dispersed(std::span<const FloorLamp* const> lamps,
                                     double column,
-                                    double row,
-                                    const PlaceRays& rays) const;
+                                    double row) const;
 
   private:
     struct StrobeLight {
@@ -148,25 +158,29 @@ class FloorLight {
         std::vector<Crease> steep;
         const LampSignal* signal;
     };
-    // For one lamp along one ray.
-    [[nodiscard]] FloorArrival arrive(const FloorLamp& lamp,
-                                      const FloorRay& ray,
-                                      const Eigen::Vector3d* from) const;
-    // Adds the light that arrives, by the table of an index node; returns the place in the table,
-    // or -1 for no light.
-    double shine(const LampSignal& signal,
-                 std::size_t node,
-                 const FloorArrival& arrived,
-                 PlaceLight& light) const;
-    [[nodiscard]] double place_in_table(double path_m) const {
-        return (path_m - table_.steps.first_m) * table_.steps.steps_per_m;
-    }
+    // A lamp's effect (floor_arrival.h).
+    struct LaneArrival {
+        LaneVector towards;  // V
+        Lanes length;
+        Lanes diffuse;
+        Lanes highlight;  // set where the floor has one
+        Lanes place;      // of the path, in steps of the table
+    };
+    // As if the edge that lights `from` were not there.
+    [[nodiscard]] LaneArrival arrive(const FloorLamp& lamp,
+                                     const LaneRay& ray,
+                                     const LaneArrival* from) const;
+    void look_between(const FloorLamp& lamp,
+                      const LaneRays& rays,
+                      const std::array<LaneArrival, kIndexNodes>& at_nodes,
+                      const Lanes& last_place,
+                      LaneLight& light) const;
 
     const Rig& rig_;
     const SignalTable& table_;
     const CameraRays& rays_;
     Plane floor_;
-    double pupil_m_;  // its height
+    LanePlane lane_floor_;
     std::vector<StrobeLight> strobes_;
     std::vector<FloorLamp> lamps_;
 };

@@ -141,24 +141,26 @@ void RayTable::look(double column, double row, std::span<WaterRay> rays) const {
     }
 }
 
-LaneVector RayTable::look(const Lanes& column, const Lanes& row) const {
-    LaneVector directions;
+void RayTable::look(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const {
     if (rig_.camera.lens || rig_.camera.port) {
+        std::vector<WaterRay> found(rays.size());
         for (std::size_t k = 0; k < kLanes; ++k) {
-            WaterRay ray;
-            look(column[k], row[k], {&ray, 1});
-            for (std::size_t i = 0; i < 3; ++i)
-                directions[i][k] = ray.direction(static_cast<Eigen::Index>(i));
+            look(column[k], row[k], found);
+            for (std::size_t j = 0; j < rays.size(); ++j) {
+                set_lane(rays[j].origin_m, k, found[j].origin_m);
+                set_lane(rays[j].direction, k, found[j].direction);
+            }
         }
-        return directions;
+        return;
     }
+    LaneRay& ray = rays.front();
+    ray.origin_m = every_lane(Eigen::Vector3d::Zero());
     for_each_pack([&](std::size_t k) {
         PackVector way = pinhole_way(rig_.camera, column.pack(k), row.pack(k));
         const Pack per_length = 1.0 / root(dot(way, way));
         for (Pack& along : way) along *= per_length;
-        set_pack(directions, k, way);
+        set_pack(ray.direction, k, way);
     });
-    return directions;
 }
 
 }  // namespace aphotic

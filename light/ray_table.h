@@ -9,6 +9,7 @@
 #pragma once
 
 #include "base/lanes.h"
+#include "light/lane_ray.h"
 #include "rig/rig.h"
 
 #include <array>
@@ -25,10 +26,10 @@ class RayTable {
   public:
     RayTable(const Rig& rig, std::vector<double> lambda_nm, int threads);
 
-    // For the first wavelength; pixels' centres are at .5.
+    // For the first wavelengths, one for each ray; pixels' centres are at .5.
     void look(double column, double row, std::span<WaterRay> rays) const;
-    // Directions of the first wavelength.
-    [[nodiscard]] LaneVector look(const Lanes& column, const Lanes& row) const;
+    // Sets origins and directions.
+    void look(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const;
 
     [[nodiscard]] bool has_nodes() const { return !nodes_.empty(); }
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <span>
 #include <utility>
 
 namespace aphotic {
@@ -36,7 +38,13 @@ void for_each_pixel(const Cell& cell, const Relief& relief, const Work& work) {
         for (int column = cell.column; column <= last_column; ++column) work(column, row);
 }
 
-// Calls look(column, row) at every vertex, then fill(cell), which leaves the vertices as they are.
+struct Pixel {
+    int column;
+    int row;
+};
+
+// Calls look(pixels) for the vertices of each row of cells, then fill(cells) for each row, which
+// leaves the vertices as they are.
 template <typename Look, typename Fill>
 void by_cells(const Relief& relief, int step_px, int threads, const Look& look, const Fill& fill) {
     const std::vector<int> columns = every(step_px, relief.width_px);
@@ -46,14 +54,18 @@ void by_cells(const Relief& relief, int step_px, int threads, const Look& look, 
             count, static_cast<std::size_t>(threads), [&](std::size_t j, std::size_t) { work(j); });
     };
     each(rows.size(), [&](std::size_t j) {
-        for (const int column : columns) look(column, rows[j]);
+        std::vector<Pixel> vertices;
+        for (const int column : columns) vertices.push_back({column, rows[j]});
+        look(vertices);
     });
     each(rows.size() - 1, [&](std::size_t j) {
+        std::vector<Cell> cells;
         for (std::size_t i = 0; i + 1 < columns.size(); ++i)
-            fill(Cell{.column = columns[i],
-                      .row = rows[j],
-                      .right = columns[i + 1],
-                      .below = rows[j + 1]});
+            cells.push_back({.column = columns[i],
+                             .row = rows[j],
+                             .right = columns[i + 1],
+                             .below = rows[j + 1]});
+        fill(cells);
     });
 }
 
@@ -64,23 +76,30 @@ std::vector<std::uint8_t> shadow_of(const ReliefShadow& shadow,
                                     const Eigen::Vector3d& lamp_m,
                                     int threads) {
     std::vector<std::uint8_t> hidden(relief.point_m.size());
-    const auto look = [&](int column, int row) {
-        const std::size_t pixel = relief.at(column, row);
-        hidden[pixel] = relief.knows(pixel) && shadow.hides(pixel, lamp_m) ? 1 : 0;
-    };
-    by_cells(relief, shadow.step_px(), threads, look, [&](const Cell& cell) {
-        const std::array<std::size_t, 4> at = corners_of(cell, relief);
-        const bool is_even =
-            std::ranges::all_of(at, [&](std::size_t k) { return hidden[k] == hidden[at[0]]; });
-        for_each_pixel(cell, relief, [&](int column, int row) {
+    const auto look = [&](std::span<const Pixel> pixels) {
+        for (const auto& [column, row] : pixels) {
             const std::size_t pixel = relief.at(column, row);
-            if (std::ranges::find(at, pixel) != at.end()) return;
-            if (is_even)
-                hidden[pixel] = hidden[at[0]];
-            else
-                look(column, row);
-        });
-    });
+            hidden[pixel] = relief.knows(pixel) && shadow.hides(pixel, lamp_m) ? 1 : 0;
+        }
+    };
+    const auto fill = [&](const std::vector<Cell>& cells) {
+        std::vector<Pixel> uneven;
+        for (const Cell& cell : cells) {
+            const std::array<std::size_t, 4> at = corners_of(cell, relief);
+            const bool is_even =
+                std::ranges::all_of(at, [&](std::size_t k) { return hidden[k] == hidden[at[0]]; });
+            for_each_pixel(cell, relief, [&](int column, int row) {
+                const std::size_t pixel = relief.at(column, row);
+                if (std::ranges::find(at, pixel) != at.end()) return;
+                if (is_even)
+                    hidden[pixel] = hidden[at[0]];
+                else
+                    uneven.push_back({column, row});
+            });
+        }
+        look(uneven);
+    };
+    by_cells(relief, shadow.step_px(), threads, look, fill);
     return hidden;
 }
 
@@ -100,8 +119,8 @@ class ReliefPainter {
         found_.seen.resize(relief.point_m.size());
     }
 
-    void look(int column, int row);
-    void fill(const Cell& cell);
+    void look(std::span<const Pixel> pixels);
+    void fill(const std::vector<Cell>& cells);
     [[nodiscard]] ReliefLight take() { return std::move(found_); }
 
   private:
@@ -109,6 +128,10 @@ class ReliefPainter {
         return found_.samples[channel * relief_.point_m.size() + pixel];
     }
     [[nodiscard]] bool is_smooth(const Cell& cell) const;
+    [[nodiscard]] float interpolated(const Cell& cell, std::size_t channel, const Pixel& at);
+    [[nodiscard]] bool is_right(const Cell& cell, const Pixel& middle);
+    void look_at_lanes(std::span<const Pixel> pixels);
+
     const FloorLight& light_;
     const Relief& relief_;
     std::vector<LampOnRelief> lamps_;
@@ -124,34 +147,60 @@ std::array<float, 4> shares_at(const Cell& cell, int column, int row) {
     return {(1.0F - x) * (1.0F - y), x * (1.0F - y), (1.0F - x) * y, x * y};
 }
 
-void ReliefPainter::look(int column, int row) {
-    const std::size_t pixel = relief_.at(column, row);
-    if (!relief_.knows(pixel)) return;
-    const Plane plane = relief_.plane(pixel);
-    PlaceRays rays;
-    if (light_.has_port()) {
-        rays = light_.rays_at(column + 0.5, row + 0.5, plane);
-    } else {
-        rays[0] = floor_ray(
-            {.origin_m = Eigen::Vector3d::Zero(), .direction = plane.point_m.normalized()}, plane);
+void ReliefPainter::look(std::span<const Pixel> pixels) {
+    std::vector<Pixel> known;
+    std::ranges::copy_if(pixels, std::back_inserter(known), [&](const Pixel& at) {
+        return relief_.knows(relief_.at(at.column, at.row));
+    });
+    for (std::size_t first = 0; first < known.size(); first += kLanes)
+        look_at_lanes(std::span(known).subspan(first, std::min(kLanes, known.size() - first)));
+}
+
+// Spare lanes repeat the last pixel.
+void ReliefPainter::look_at_lanes(std::span<const Pixel> pixels) {
+    std::array<std::size_t, kLanes> pixel;
+    Lanes column;
+    Lanes row;
+    LanePlane floor;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        const Pixel& at = pixels[std::min(k, pixels.size() - 1)];
+        pixel[k] = relief_.at(at.column, at.row);
+        const Plane plane = relief_.plane(pixel[k]);
+        column[k] = at.column + 0.5;
+        row[k] = at.row + 0.5;
+        set_lane(floor.point_m, k, plane.point_m);
+        set_lane(floor.normal, k, plane.normal);
     }
-    PlaceLight place;
-    std::uint32_t seen = 0;
-    for (LampOnRelief& one : lamps_) {
+    const LaneRays rays = light_.rays_at(column, row, floor);
+    const LaneRay& middle = rays.ray[0];
+    LaneLight light;
+    std::array<std::uint32_t, kLanes> seen{};
+    for (const LampOnRelief& one : lamps_) {
         FloorLamp lamp = one.lamp;
-        lamp.floor_m = height_above(plane, lamp.position_m);
-        if (one.hidden[pixel] != 0) seen += one.of_shadow;
-        if (lamp.floor_m <= 0.0 || one.hidden[pixel] != 0 || !rays[0].sees_floor()) continue;
-        if (!one.of_edges.empty()) {
-            const Eigen::Vector3d way = towards(lamp.position_m, rays[0]);
-            for (std::size_t e = 0; e < one.of_edges.size(); ++e)
-                if (one.edges->is_within(e, way)) seen += one.of_edges[e];
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const Plane plane{.point_m = vector_of_lane(floor.point_m, k),
+                              .normal = vector_of_lane(floor.normal, k)};
+            const bool is_hidden = one.hidden[pixel[k]] != 0;
+            if (is_hidden) seen[k] += one.of_shadow;
+            lamp.floor_m[k] =
+                is_hidden ? 0.0 : std::max(0.0, height_above(plane, lamp.position_m));
         }
-        light_.add(lamp, rays, false, place);
+        for (std::size_t e = 0; e < one.of_edges.size(); ++e) {
+            LaneVector V;
+            for_each_pack(
+                [&](std::size_t k) { set_pack(V, k, towards(lamp.position_m, middle, k)); });
+            for (std::size_t k = 0; k < kLanes; ++k)
+                if (lamp.floor_m[k] > 0.0 && middle.down[k] > 0.0 &&
+                    one.edges->is_within(e, vector_of_lane(V, k)))
+                    seen[k] += one.of_edges[e];
+        }
+        light_.add(lamp, rays, light);
     }
-    found_.seen[pixel] = seen;
-    for (std::size_t c = 0; c < kChannels; ++c)
-        sample(c, pixel) = static_cast<float>(place.signals[c]);
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+        found_.seen[pixel[k]] = seen[k];
+        for (std::size_t c = 0; c < kChannels; ++c)
+            sample(c, pixel[k]) = static_cast<float>(light.signals[c][k]);
+    }
 }
 
 // Points and normals are interpolated from the corners', and the same lamps light all of them.
@@ -176,38 +225,60 @@ bool ReliefPainter::is_smooth(const Cell& cell) const {
     return is;
 }
 
-void ReliefPainter::fill(const Cell& cell) {
-    const std::array<std::size_t, 4> at = corners_of(cell, relief_);
-    const int column = (cell.column + cell.right) / 2;
-    const int row = (cell.row + cell.below) / 2;
-    bool is_right = is_smooth(cell);
-    if (is_right && std::ranges::find(at, relief_.at(column, row)) == at.end()) {
-        look(column, row);
-        const std::array<float, 4> shares = shares_at(cell, column, row);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            float interpolated = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k)
-                interpolated += shares[k] * sample(c, at[k]);
-            const float there = sample(c, relief_.at(column, row));
-            is_right &= std::abs(interpolated - there) <= kReliefError * there;
+float ReliefPainter::interpolated(const Cell& cell, std::size_t channel, const Pixel& at) {
+    const std::array<std::size_t, 4> corners = corners_of(cell, relief_);
+    const std::array<float, 4> shares = shares_at(cell, at.column, at.row);
+    float sum = 0.0F;
+    for (std::size_t k = 0; k < corners.size(); ++k) sum += shares[k] * sample(channel, corners[k]);
+    return sum;
+}
+
+bool ReliefPainter::is_right(const Cell& cell, const Pixel& middle) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const float there = sample(c, relief_.at(middle.column, middle.row));
+        if (!(std::abs(interpolated(cell, c, middle) - there) <= kReliefError * there)) return false;
+    }
+    return true;
+}
+
+// A row of cells: pixels that must be looked at are gathered, for lanes.
+void ReliefPainter::fill(const std::vector<Cell>& cells) {
+    const auto middle_of = [](const Cell& cell) {
+        return Pixel{(cell.column + cell.right) / 2, (cell.row + cell.below) / 2};
+    };
+    std::vector<Cell> smooth;
+    std::vector<Pixel> middles;
+    std::vector<Pixel> rest;
+    const auto for_each_within = [&](const Cell& cell, const auto& work) {
+        const std::array<std::size_t, 4> corners = corners_of(cell, relief_);
+        for_each_pixel(cell, relief_, [&](int column, int row) {
+            const std::size_t pixel = relief_.at(column, row);
+            if (std::ranges::find(corners, pixel) == corners.end()) work(pixel, Pixel{column, row});
+        });
+    };
+    const auto look_later = [&](std::size_t, const Pixel& at) { rest.push_back(at); };
+    for (const Cell& cell : cells) {
+        if (is_smooth(cell)) {
+            smooth.push_back(cell);
+            middles.push_back(middle_of(cell));
+        } else {
+            for_each_within(cell, look_later);
         }
     }
-    for_each_pixel(cell, relief_, [&](int x, int y) {
-        const std::size_t pixel = relief_.at(x, y);
-        if (std::ranges::find(at, pixel) != at.end()) return;
-        if (!is_right) {
-            look(x, y);
-            return;
+    look(middles);
+    for (const Cell& cell : smooth) {
+        if (!is_right(cell, middle_of(cell))) {
+            for_each_within(cell, look_later);
+            continue;
         }
-        const std::array<float, 4> shares = shares_at(cell, x, y);
-        found_.seen[pixel] = found_.seen[at[0]];
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            float interpolated = 0.0F;
-            for (std::size_t k = 0; k < at.size(); ++k)
-                interpolated += shares[k] * sample(c, at[k]);
-            sample(c, pixel) = interpolated;
-        }
-    });
+        const std::uint32_t seen = found_.seen[relief_.at(cell.column, cell.row)];
+        for_each_within(cell, [&](std::size_t pixel, const Pixel& at) {
+            found_.seen[pixel] = seen;
+            for (std::size_t c = 0; c < kChannels; ++c)
+                sample(c, pixel) = interpolated(cell, c, at);
+        });
+    }
+    look(rest);
 }
 
 }  // namespace
@@ -235,8 +306,8 @@ ReliefLight relief_light(const Rig& rig,
         relief,
         kReliefCell_px,
         threads,
-        [&](int column, int row) { painter.look(column, row); },
-        [&](const Cell& one) { painter.fill(one); });
+        [&](const std::vector<Pixel>& vertices) { painter.look(vertices); },
+        [&](const std::vector<Cell>& cells) { painter.fill(cells); });
     return painter.take();
 }
 

@@ -48,7 +48,7 @@ std::shared_ptr<const ReliefVeil::Level> ReliefVeil::level(int k) const {
     VeilNodes nodes;
     for (int j = 0; j < down_; ++j) {
         for (int i = 0; i < across_; ++i) {
-            const PlaceRays rays = rays_.at(i * spacing_px_, j * spacing_px_, level, false);
+            const PlaceRays rays = rays_.at(i * spacing_px_, j * spacing_px_, level);
             const VeilMap::Signal veil = map_.at(rays, nodes);
             for (std::size_t c = 0; c < kChannels; ++c)
                 found->push_back(static_cast<float>(veil[c]));

@@ -49,22 +49,6 @@ struct SignalTable {
 [[nodiscard]] std::vector<const Spectrum*> lamps_of(const Rig& rig,
                                                     std::vector<std::size_t>& by_strobe);
 
-// Adds factor * T at a path, given in steps of a table.
 using Signals = std::array<double, kChannels>;
-inline void add_signal(const std::vector<float>& table,
-                       double place,
-                       double factor,
-                       Signals& signals) {
-    const auto step = static_cast<std::size_t>(place);
-    const double t = place - static_cast<double>(step);
-    const float* const cubic = &table[step * kTableStride];
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const double c_0 = cubic[c];
-        const double c_1 = cubic[c + kTableLanes];
-        const double c_2 = cubic[c + 2 * kTableLanes];
-        const double c_3 = cubic[c + 3 * kTableLanes];
-        signals[c] += factor * (c_0 + t * (c_1 + t * (c_2 + t * c_3)));
-    }
-}
 
 }  // namespace aphotic

@@ -189,7 +189,10 @@ class VeilTiles : public TileLight {
   public:
     using Piece = std::size_t;
     using Group = std::vector<std::size_t>;
-    using Place = PlaceRays;
+    struct Place {
+        PixelPlace at;
+        PlaceRays rays;
+    };
     struct Found {
         PlaceSignals signals{};
     };
@@ -208,7 +211,7 @@ class VeilTiles : public TileLight {
                                            Group& rest) const {
         std::vector<FloorRay> rays;
         for (const auto& [x, y] : tile_places(tile.width, tile.height))
-            rays.push_back(place({{{tile.column + x + 0.5, tile.row + y + 0.5}}}, false)[0]);
+            rays.push_back(rays_.at(tile.column + x + 0.5, tile.row + y + 0.5, plane_)[0]);
         std::vector<Group> groups;
         for (const std::size_t part : parts) {
             const Eigen::Vector3d& lamp_m =
@@ -227,26 +230,29 @@ class VeilTiles : public TileLight {
     static const Group& all_of(const Group& parts) { return parts; }
     static void give_back(const Group& parts, Group& rest) { rest.push_back(parts.front()); }
 
-    [[nodiscard]] PlaceRays place(const std::array<PixelPlace, 1>& at, bool /*is_exact*/) const {
-        return rays_.at(at[0][0], at[0][1], plane_, false);
+    [[nodiscard]] Place place(const std::array<PixelPlace, 1>& at, bool /*is_exact*/) const {
+        return {.at = at[0], .rays = rays_.at(at[0][0], at[0][1], plane_)};
     }
 
-    [[nodiscard]] Found find(const Group& parts, const PlaceRays& rays, bool /*is_exact*/) {
+    [[nodiscard]] Found find(const Group& parts, const Place& place, bool /*is_exact*/) {
         Found found;
         for (std::size_t j = 0; j < map_.index_nodes_nm_.size(); ++j) {
+            const FloorRay& ray = place.rays[j];
             for (const std::size_t part : parts) {
-                map_.veil_.nodes_of_part(part, water_ray(rays[j]), to_floor_m(rays[j]), nodes_);
+                map_.veil_.nodes_of_part(part, water_ray(ray), to_floor_m(ray), nodes_);
                 map_.add(nodes_, map_.veil_.strobe_of_part()[part], j, found.signals);
             }
         }
         return found;
     }
 
-    void beside(const PlaceRays& rays, PlaceSignals& signals) const {
+    void beside(const Place& place, PlaceSignals& signals) const {
         if (floor_ == nullptr) return;
-        PlaceLight light;
-        for (const FloorLamp& lamp : floor_->lamps()) floor_->add(lamp, rays, false, light);
-        std::ranges::copy(light.signals, signals.begin());
+        LaneLight light;
+        const LaneRays rays =
+            floor_->rays_at(every_lane(place.at[0]), every_lane(place.at[1]), false);
+        for (const FloorLamp& lamp : floor_->lamps()) floor_->add(lamp, rays, light);
+        std::ranges::copy(light.of_lane(0).signals, signals.begin());
     }
 
     [[nodiscard]] bool is_right(const Found& found, const TileCheck& check) const {

@@ -244,7 +244,7 @@ std::vector<double> LightmapMaker::cones(const Sled& sled) const {
     found.reserve(size_of(rig_.camera.width_px) * size_of(rig_.camera.height_px));
     for (int row = 0; row < rig_.camera.height_px; ++row) {
         for (int column = 0; column < rig_.camera.width_px; ++column) {
-            const FloorRay ray = light.rays_at(column + 0.5, row + 0.5, false)[0];
+            const FloorRay ray = light.rays_at(column + 0.5, row + 0.5)[0];
             double sum = 0.0;
             for (std::size_t k = 0; ray.sees_floor() && k < light.lamps().size(); ++k) {
                 const FloorLamp& lamp = light.lamps()[k];

@@ -86,7 +86,7 @@ bool ReliefMapMaker::has_port() const {
 }
 
 WaterRay ReliefMapMaker::ray(double column, double row) const {
-    const FloorRay found = tables_->light.rays_at(column, row, false)[0];
+    const FloorRay found = tables_->light.rays_at(column, row)[0];
     return {.origin_m = found.origin_m, .direction = found.direction};
 }
 

@@ -140,7 +140,7 @@ std::vector<float> block_of_pixels(const std::vector<Planes>& planes,
                          std::size_t first = 0;
                          for (const auto& [veil, rays] : planes) {
                              const VeilMap::Signal found =
-                                 veil.at(rays.at(x, y, floor, false),
+                                 veil.at(rays.at(x, y, floor),
                                          rooms[thread],
                                          is_floor ? std::nullopt : std::optional(distance_m[at]));
                              for (std::size_t c = 0; c < veil.planes(); ++c)

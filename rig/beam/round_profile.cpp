@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 namespace aphotic {
@@ -102,6 +103,7 @@ RoundProfile::RoundProfile(const Beam& beam)
     const auto value_at = [&](double q) {
         return intensity(2.0 * std::asin(std::min(1.0, 0.5 * q)));
     };
+    std::vector<double> starts{0.0};  // of pieces
     const std::function<void(double, double, std::size_t, int)> add =
         [&](double first, double last, std::size_t region, int halvings) {
             Fit values;
@@ -120,7 +122,7 @@ RoundProfile::RoundProfile(const Beam& beam)
             }
             if (is_right || halvings == kMostHalvings) {
                 pieces_.push_back(piece);
-                ends_.push_back(last);
+                starts.push_back(last);
                 return;
             }
             const double middle = 0.5 * (first + last);
@@ -138,34 +140,16 @@ RoundProfile::RoundProfile(const Beam& beam)
             0);
     }
     // Beyond, there is no light.
-    const double end = ends_.back();
+    const double end = starts.back();
     const bool ends_in_step = std::ranges::any_of(
         steps, [&](double step_rad) { return std::abs(chord_of(step_rad) - end) < 1e-9; });
     pieces_.push_back({.first = end, .region = pieces_.back().region + (ends_in_step ? 1 : 0)});
+    starts.push_back(end + 1.0);
+    piece_at_ = CellSearch(std::move(starts));
 }
 
-std::optional<double> RoundProfile::chord(double cosine) const {
-    if (!has_window_) return std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
-    const double sine2 = window_index_ * window_index_ * (1.0 - cosine * cosine);
-    if (cosine <= 0.0 || sine2 >= 1.0) return std::nullopt;
-    return std::sqrt(std::max(0.0, 2.0 - 2.0 * std::sqrt(1.0 - sine2)));
-}
-
-std::size_t RoundProfile::piece_at(double q) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(ends_, q) - ends_.begin());
-}
-
-double RoundProfile::value(const Piece& piece, double q) {
-    return std::max(0.0, polynomial(piece.c, (q - piece.first) * piece.per_width));
-}
-
-double RoundProfile::at(double cosine) const {
-    const auto q = chord(cosine);
-    return q ? value(pieces_[piece_at(*q)], *q) : 0.0;
-}
-
-Lanes RoundProfile::at(const Lanes& cosine) const {
-    Lanes I;
+Lanes RoundProfile::chord(const Lanes& cosine) const {
+    Lanes chord;
     for_each_pack([&](std::size_t k) {
         const Pack x = cosine.pack(k);
         Pack q = root(2.0 - 2.0 * x);
@@ -174,21 +158,38 @@ Lanes RoundProfile::at(const Lanes& cosine) const {
             q = root(2.0 - 2.0 * root(cos2));
             where(x <= 0.0 || cos2 <= 0.0, q) = kMostChord;
         }
-        I.set_pack(k, q);
+        chord.set_pack(k, q);
     });
-    for (double& q : I.lane) q = value(pieces_[piece_at(q)], q);
+    return chord;
+}
+
+double RoundProfile::value(const Piece& piece, double q) {
+    return std::max(0.0, polynomial(piece.c, (q - piece.first) * piece.per_width));
+}
+
+Lanes RoundProfile::at(const Lanes& cosine) const {
+    Lanes I = chord(cosine);
+    for (double& q : I.lane) q = value(pieces_[piece_at_(q)], q);
     return I;
 }
 
-double RoundProfile::continued(double cosine, double cosine_from) const {
-    const auto q_from = chord(cosine_from);
-    if (!q_from) return 0.0;
-    const double q = chord(cosine).value_or(std::numbers::sqrt2);
-    const std::size_t region = pieces_[piece_at(*q_from)].region;
-    std::size_t own = piece_at(q);
-    while (pieces_[own].region > region) --own;
-    while (pieces_[own].region < region) ++own;
-    return value(pieces_[own], q);
+Lanes RoundProfile::continued(const Lanes& cosine, const Lanes& cosine_from) const {
+    Lanes I = chord(cosine);
+    const Lanes q_from = chord(cosine_from);
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        if (has_window_ && q_from[k] == kMostChord) {
+            I[k] = 0.0;
+            continue;
+        }
+        // Past a window's last direction, its last piece.
+        const double q = has_window_ ? std::min(I[k], std::numbers::sqrt2) : I[k];
+        const std::size_t region = pieces_[piece_at_(q_from[k])].region;
+        std::size_t own = piece_at_(q);
+        while (pieces_[own].region > region) --own;
+        while (pieces_[own].region < region) ++own;
+        I[k] = value(pieces_[own], q);
+    }
+    return I;
 }
 
 }  // namespace aphotic

@@ -15,10 +15,10 @@
 
 #include "base/lanes.h"
 #include "rig/beam/beam.h"
+#include "rig/beam/cell_search.h"
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 namespace aphotic {
@@ -32,10 +32,9 @@ class RoundProfile {
     explicit RoundProfile(const Beam& beam);
 
     // By the cosine off the axis in water.
-    [[nodiscard]] double at(double cosine) const;
     [[nodiscard]] Lanes at(const Lanes& cosine) const;
-    // As if no edge lay between it and the direction of another cosine.
-    [[nodiscard]] double continued(double cosine, double cosine_from) const;
+    // As if no edge lay between them and the directions of other cosines.
+    [[nodiscard]] Lanes continued(const Lanes& cosine, const Lanes& cosine_from) const;
 
   private:
     struct Piece {
@@ -44,15 +43,14 @@ class RoundProfile {
         std::array<double, kProfileOrder> c{};  // in 0 to 1 over the piece
         std::size_t region = 0;
     };
-    // Empty where a window transmits nothing, and behind the lamp past the last piece.
-    [[nodiscard]] std::optional<double> chord(double cosine) const;
-    [[nodiscard]] std::size_t piece_at(double q) const;
+    // q; 2, past the last piece, where a window transmits nothing.
+    [[nodiscard]] Lanes chord(const Lanes& cosine) const;
     [[nodiscard]] static double value(const Piece& piece, double q);
 
     double window_index_ = 1.0;  // of the water, behind a window
     bool has_window_ = false;
-    std::vector<double> ends_;  // of pieces, increasing
     std::vector<Piece> pieces_;
+    CellSearch piece_at_;  // by q
 };
 
 [[nodiscard]] bool is_round(const Beam& beam);

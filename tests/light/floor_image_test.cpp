@@ -44,9 +44,11 @@ void expect_light_of_each_pixel(const Rig& rig, const std::string& what) {
     double worst = 0.0;
     for (int row = 0; row < camera.height_px; row += 3) {
         for (int column = 0; column < camera.width_px; ++column) {
-            PlaceLight expected;
-            const PlaceRays at = light.rays_at(column + 0.5, row + 0.5, false);
-            for (const FloorLamp& lamp : light.lamps()) light.add(lamp, at, false, expected);
+            LaneLight all;
+            const LaneRays at =
+                light.rays_at(every_lane(column + 0.5), every_lane(row + 0.5), false);
+            for (const FloorLamp& lamp : light.lamps()) light.add(lamp, at, all);
+            const PlaceLight expected = all.of_lane(0);
             const auto i = static_cast<std::size_t>(row * camera.width_px + column);
             for (std::size_t c = 0; c < kChannels; ++c) {
                 if (expected.signals[c] == 0.0) {

@@ -145,7 +145,7 @@ double off_by(const Rig& rig,
     double worst = 0.0;
     for (int row = step / 2; row < map.height_px; row += step) {
         for (int column = step / 2; column < map.width_px; column += step) {
-            const auto expected = exact.at(rays.at(column + 0.5, row + 0.5, floor, false), nodes);
+            const auto expected = exact.at(rays.at(column + 0.5, row + 0.5, floor), nodes);
             const auto at = static_cast<std::size_t>(row * map.width_px + column);
             for (std::size_t c = 0; c < kChannels; ++c) {
                 const double off =

@@ -25,6 +25,20 @@ Eigen::Vector3d towards(double theta_rad) {
     return {std::sin(theta_rad), 0.0, std::cos(theta_rad)};
 }
 
+double at(const RoundProfile& profile, double theta_rad) {
+    Lanes cosine;
+    cosine.lane.fill(std::cos(theta_rad));
+    return profile.at(cosine)[0];
+}
+
+double continued(const RoundProfile& profile, double to_rad, double from_rad) {
+    Lanes cosine;
+    Lanes cosine_from;
+    cosine.lane.fill(std::cos(to_rad));
+    cosine_from.lane.fill(std::cos(from_rad));
+    return profile.continued(cosine, cosine_from)[0];
+}
+
 std::vector<Beam> round_beams() {
     std::vector<Beam> beams;
     for (int i = 0; i < 60; ++i) {
@@ -48,20 +62,24 @@ TEST(RoundProfile, IsTheBeamAtAnyAngle) {
         const double largest = most_intensity(beam);
         for (double theta_rad = 1e-4; theta_rad < 3.14; theta_rad += 1.7e-3) {
             const double expected = intensity_towards(beam, kFrame, towards(theta_rad));
-            EXPECT_NEAR(profile.at(std::cos(theta_rad)), expected, kOff * largest) << theta_rad;
+            EXPECT_NEAR(at(profile, theta_rad), expected, kOff * largest) << theta_rad;
         }
     }
 }
 
-TEST(RoundProfile, IsTheSameInLanes) {
+// Lanes of different pieces do not mix.
+TEST(RoundProfile, IsEachLanesOwn) {
     for (const Beam& beam : round_beams()) {
         const RoundProfile profile(beam);
-        for (double first = -1.0; first < 1.0; first += 0.02) {
+        for (double first_rad = 0.0; first_rad < 1.5; first_rad += 0.1) {
+            const auto theta_rad = [&](std::size_t k) {
+                return first_rad + 0.2 * static_cast<double>(k);
+            };
             Lanes cosines;
-            for (std::size_t k = 0; k < kLanes; ++k)
-                cosines[k] = first + 0.0025 * static_cast<double>(k);
+            for (std::size_t k = 0; k < kLanes; ++k) cosines[k] = std::cos(theta_rad(k));
             const Lanes found = profile.at(cosines);
-            for (std::size_t k = 0; k < kLanes; ++k) ASSERT_EQ(found[k], profile.at(cosines[k]));
+            for (std::size_t k = 0; k < kLanes; ++k)
+                ASSERT_EQ(found[k], at(profile, theta_rad(k)));
         }
     }
 }
@@ -75,7 +93,7 @@ TEST(RoundProfile, HasTheDigitsOfDimLight) {
     const RoundProfile profile(beam);
     for (double theta_deg = 0.5; theta_deg < 60.0; theta_deg += 0.5) {
         const double expected = intensity_towards(beam, kFrame, towards(theta_deg * kDegree));
-        EXPECT_NEAR(profile.at(std::cos(theta_deg * kDegree)), expected, kOff * expected)
+        EXPECT_NEAR(at(profile, theta_deg * kDegree), expected, kOff * expected)
             << theta_deg;
     }
 }
@@ -98,7 +116,7 @@ TEST(RoundProfile, GoesOnAsThoughNoEdgeWereThere) {
                 });
                 if (!is_alone || to_rad > 1.5) continue;
                 ++edges;
-                EXPECT_NEAR(profile.continued(std::cos(to_rad), std::cos(from_rad)),
+                EXPECT_NEAR(continued(profile, to_rad, from_rad),
                             continued_intensity(beam, kFrame, towards(to_rad), towards(from_rad)),
                             1e-6 * most_intensity(beam))
                     << edge_rad;
