@@ -297,7 +297,7 @@ TEST(Interrupted, ASurveyLeavesNothing) {
         EXPECT_TRUE(fs::is_empty(home / "tmp")) << "left in TMPDIR";
         EXPECT_FALSE(fs::exists(home / "out"));
         EXPECT_TRUE(comes_true([&] { return processes_in(home).empty(); }));
-        EXPECT_TRUE(read_text_file(home / "stderr").starts_with("aphotic: interrupted ("));
+        EXPECT_TRUE(read_text_file(home / "stderr").starts_with("aphotic: interrupted; "));
     }
 }
 
