@@ -46,7 +46,7 @@ void require_place(const Navigation& navigation, const Place& place, bool is_by_
         lacking.front());
 }
 
-// How far below the camera the floor is that its altitude is over.
+// From the camera to the floor whose altitude the navigation gives.
 Vector3d way_to_floor(const Survey& survey, const Sled& sled, const Vector3d& axis) {
     const auto& notes = survey.navigation->notes();
     const bool is_along_axis = !notes || notes->mounting.altitude_is == AltitudeIs::Axis;

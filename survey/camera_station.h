@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the cameras of a survey stand over its mesh (relief/relief_scene.h), by the navigation:
-// east and north as it tells them, turned by Rz(heading) Ry(pitch) Rx(roll), and z
+// Position and attitude of a survey's cameras over its mesh (relief/relief_scene.h), from the
+// navigation: its east and north, turned by Rz(heading) Ry(pitch) Rx(roll), and z
 //
-//   by depth       the navigation's own, below the sea level, where the mesh has its z = 0
-//   by altitude    as high over the mesh as the altitude says: along the axis where altitudes are,
-//                  else straight down
+//   by depth       the navigation's depth below the sea level, where the mesh has its z = 0
+//   by altitude    the altitude above the mesh: along the axis if altitudes are measured so, else
+//                  straight down
 #pragma once
 
 #include "survey/survey.h"
 
 namespace aphotic {
 
-// An InputError of this one image when its place is not known, or it is over no part of the mesh.
+// An InputError for this one image if its position is unknown, or no part of the mesh lies below
+// it.
 [[nodiscard]] CameraStation station_of(const Survey& survey, const ImageFile& file);
 
-// An InputError with the numbers of both when no image looks at the mesh.
+// An InputError with the coordinates of both if no image sees the mesh.
 void require_in_view(const Survey& survey);
 
 }  // namespace aphotic

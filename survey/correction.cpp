@@ -23,7 +23,7 @@ std::span<const float> plane_of(const Lightmap& map, int channel) {
     return plane_of(map.samples, channel);
 }
 
-// Samples of one channel in a row: in a mosaic, every other pixel at most.
+// Samples of one channel in a row; in a mosaic, every other pixel at most.
 struct Run {
     int channel;
     std::size_t sample;  // of the raw image
@@ -111,7 +111,7 @@ CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& co
         const bool is_lit = held > 0.0;
         least[i] =
             is_lit ? std::max(static_cast<float>(held), std::numeric_limits<float>::min()) : 1.0F;
-        // Where the map is all black, nothing can be told.
+        // Where a channel's map is all black, its samples carry no information.
         gain[i] = is_lit ? static_cast<float>(correction.gain[i]) : 0.0F;
     }
     const std::array<std::span<const float>, kChannels> lights{

@@ -5,12 +5,12 @@
 //   corrected_c = g_c (raw - black - v_c) h / max(map_c, h least_c),
 //   v_c = E_c veil_c,    E_c = middle_c / g_c,    h = min_k min(1, map_k / least_k)
 //
-// g      gain, one number a channel for the whole survey
+// g      gain, one number per channel for the whole survey
 // veil   what the water scatters into the view (lightmap.h); 0 where it does not scatter
 // E      the camera's exposure: its numbers for a signal of 1
-// map    the rig's signal at the pixel (lightmap.h), of the image's own altitude and attitude
-// least  where the map is darker in any channel, the gain of all channels is held by one share h:
-//        noise is not blown up there, the pixel keeps its colour, and is marked as doubtful
+// map    the rig's signal at the pixel (lightmap.h), at the image's own altitude and attitude
+// least  where the map is darker in any channel, the gain of all channels is reduced by one factor
+//        h: noise is not amplified there, the pixel keeps its colour, and is marked as doubtful
 //
 // Where the map is bright enough, h = 1 and the pixel is divided by its light. No sample exceeds
 // g_c (raw - black) / least_c. Only channels whose map is above 0 count in h: a map of 0 carries no
@@ -26,14 +26,13 @@
 // corrected floor, where that share is q, by (1 - r) (q - q_0) / (k (1 - q)) of itself.
 //
 // Noise. A sample of s = raw - black - v has the standard deviation sqrt(r^2 + (s + v) / e): read
-// noise r, and the shot noise of e electrons a number, the veil's among them. Relative to s it is
-// under the limit L from
+// noise r, and the shot noise at e electrons per number, the veil's included. Relative to s it is
+// below the limit L for
 //
-//   s >= (q + sqrt(q^2 + 4 L^2 (r^2 + q v))) / (2 L^2),  q = 1/e, 0 where shot noise is left aside
+//   s >= (q + sqrt(q^2 + 4 L^2 (r^2 + q v))) / (2 L^2),  q = 1/e, or 0 if shot noise is ignored
 //
-// up: r / L where there is no shot noise, 1 / (e L^2) where there is no other. For v the channel's
-// largest of the image is taken. The middle gives
-// s = middle_c map_c / g_c, so that
+// This is r / L without shot noise, and 1 / (e L^2) without read noise or veil. v is the channel's
+// largest veil in the image. The middle gives s = middle_c map_c / g_c, so that
 //
 //   least_c = max(share of the map's brightest, s g_c / middle_c)
 #pragma once
@@ -52,10 +51,10 @@ namespace aphotic {
 using PerChannel = std::array<double, kChannels>;
 
 // Why a pixel is doubtful: bits of its mask.
-inline constexpr std::uint8_t kDark = 1;       // its gain is held
-inline constexpr std::uint8_t kSaturated = 2;  // the sample is at the white level or over it
-inline constexpr std::uint8_t kBlack = 4;      // it is at the black level, or the veil's, or under
-inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone passes near (cone_edge.h)
+inline constexpr std::uint8_t kDark = 1;       // its gain is reduced
+inline constexpr std::uint8_t kSaturated = 2;  // the sample is at or above the white level
+inline constexpr std::uint8_t kBlack = 4;      // it is at or below the black level, or the veil
+inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone is near (cone_edge.h)
 inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
 inline constexpr std::uint8_t kRange = 32;    // its depth map has a hole there
 inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 6> kDoubts{
@@ -84,17 +83,17 @@ struct Correction {
 };
 
 struct CorrectedImage {
-    RawImage image;                    // laid out as the raw one; linear, 1 is white
-    std::vector<std::uint8_t> doubts;  // by pixel
+    RawImage image;                    // same layout as the raw one; linear, 1 is white
+    std::vector<std::uint8_t> doubts;  // per pixel
 };
 
-// Throws InputError if raw and map differ in size, or if a sample is not finite, or would not be
-// under the gain.
+// An InputError if raw and map differ in size, or if a sample is not finite, before or after the
+// gain.
 [[nodiscard]] CorrectedImage corrected(RawImage raw,
                                        const Lightmap& map,
                                        const Correction& correction);
 
-// The same with R, G and B at every pixel, each as doubtful as the pixels it is made of.
+// The same with R, G and B at every pixel, which inherits the doubts of the pixels it is made from.
 [[nodiscard]] CorrectedImage demosaiced(const CorrectedImage& corrected);
 
 // The median of (raw - black) / map_c over the pixels that are neither saturated nor black, nor

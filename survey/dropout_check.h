@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the strobes fired (dropouts.h) in a survey's images: by the light of each strobe if the
-// rig is known, otherwise by the one map, otherwise by their level.
+// Whether the strobes fired (dropouts.h) in a survey's images: from the light of each strobe if the
+// rig is known, otherwise from the one map, otherwise from the image level.
 #pragma once
 
 #include "survey/dropouts.h"
@@ -25,8 +25,8 @@ namespace aphotic {
                                                     const Survey& survey,
                                                     DropoutScales& scales);
 
-// Records in the image its share of the survey's light, and divides its exposure by that if
-// correction is requested; if each image has its own exposure, its level likewise. An InputError
+// Records in the image its share of the survey's light, and divides its exposure by that share if
+// correction is requested; with one exposure per image, it also corrects the level. An InputError
 // for an image without light.
 void judge(SurveyImage& taken,
            const Survey& survey,
@@ -34,7 +34,7 @@ void judge(SurveyImage& taken,
            const DropoutScales& scales);
 [[nodiscard]] std::string why_dark(const Dropout& found);
 
-// For a strobe that did not fire, or all at less than their power.
+// For a strobe that did not fire, or for all of them at reduced power.
 [[nodiscard]] MarkedImage marked(const std::string& image,
                                  const std::vector<std::string>& strobes,
                                  double share,

@@ -22,10 +22,10 @@ constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMedianOfT2 = 0.8165;  // of the absolute value
 constexpr double kMedianOfT4 = 0.7407;
 constexpr double kPeakOfT4 = 0.375;   // density at 0
-constexpr double kLeastScale = 0.02;  // poses and maps are no better
-constexpr double kFewDetail = 0.1;    // at least, of few images
+constexpr double kLeastScale = 0.02;  // poses and maps are no better than this
+constexpr double kFewDetail = 0.1;    // the least for few images
 
-// Of cells, as samples come, row by row.
+// Means over cells of samples that arrive row by row.
 class CellMeans {
   public:
     CellMeans(int side, int width_px, int height_px)
@@ -67,7 +67,7 @@ double median_of(std::vector<double> numbers) {
     return upper_median(numbers);
 }
 
-// use(size, d): of cells of 2 x 2, then of 4 x 4 and so on.
+// use(size, d): for cells of 2 x 2, then of 4 x 4 and so on.
 template <typename Use>
 void for_details(CellPlane z, std::size_t side, const Use& use) {
     for (std::size_t size = 0; side > 1; ++size, side /= 2) {
@@ -95,7 +95,7 @@ void for_details(CellPlane z, std::size_t side, const Use& use) {
     }
 }
 
-// Of an image: the cells that count, and the stray light.
+// An image's cells that count, and its stray light.
 struct View {
     const LightCells& image;
     double brightest;
@@ -113,7 +113,7 @@ struct View {
         }
         return light;
     }
-    // The median of signal over light; NaN of no cell.
+    // The median of signal over light; NaN if no cell counts.
     [[nodiscard]] double quotient(const CellPlane& lit) const {
         std::vector<double> quotients;
         for (std::size_t k = 0; k < lit.size(); ++k)
@@ -121,7 +121,7 @@ struct View {
                 quotients.push_back(image.signal[k] / lit[k]);
         return upper_median(quotients);
     }
-    // Of all signal to all light: what a single lamp in a corner still has.
+    // All signal over all light: a single lamp in a corner still contributes.
     [[nodiscard]] double brightness() const {
         double signal = 0.0;
         double light = 0.0;
@@ -158,8 +158,8 @@ struct View {
 struct Hypothesis {
     std::uint64_t out = 0;
     bool is_dim = false;
-    double likelihood = 0.0;  // its logarithm
-    double prior = 0.0;       // that of its odds against "all fired"
+    double likelihood = 0.0;  // the logarithm
+    double prior = 0.0;       // log odds against "all fired"
     double level = 0.0;
 };
 
@@ -217,7 +217,7 @@ const Hypothesis& likeliest(const std::vector<Hypothesis>& all) {
         all, {}, [](const Hypothesis& one) { return one.likelihood + one.prior; });
 }
 
-// The median of those that are lit at all, were nine of ten images dark.
+// The median of images with any light, valid even if nine of ten images are dark.
 double first_level(std::span<const LightCells> images) {
     std::vector<double> quotients;
     for (const LightCells& image : images) {
@@ -239,7 +239,7 @@ std::string name_of(Dropouts dropouts) {
 }
 
 int cells_across(int width_px, int height_px) {
-    constexpr int kLeast_px = 4;  // of a cell: two of each of a mosaic's sites, along either side
+    constexpr int kLeast_px = 4;  // of a cell: two of each mosaic site along either side
     int side = kCells;
     while (side > 1 && side * kLeast_px > std::min(width_px, height_px)) side /= 2;
     return side;
@@ -268,7 +268,7 @@ CellPlane cells_of(const SurveyImage& taken, int side) {
 }
 
 CellPlane cells_of(const Lightmap& map, int side) {
-    // Of coarse maps, pixels are split, for a cell's border may pass within.
+    // Pixels of coarse maps are split, since a cell's border may pass through them.
     constexpr int kFine_px = 256;
     const int split = std::max(1, kFine_px / std::max(map.width_px, map.height_px));
     CellMeans cells(side, split * map.width_px, split * map.height_px);

@@ -24,7 +24,7 @@
 namespace aphotic {
 namespace {
 
-// By the pattern of the whole file, as for --bayer.
+// In the order of the whole file's pattern, as for --bayer.
 std::array<double, 4> sites_of_file(const SurveyImage& taken) {
     const std::array<double, 4> medians = site_medians(taken.raw, taken.levels.black);
     std::array<double, 4> of_file{};
@@ -36,15 +36,15 @@ std::array<double, 4> sites_of_file(const SurveyImage& taken) {
     return of_file;
 }
 
-// The images' appearance, veil included.
+// The appearance in images, veil included.
 Lightmap as_signal(Lightmap map) {
     map.samples = signal_of(map);
     map.veil.clear();
     return map;
 }
 
-// Whether the file says that its numbers are for viewing: a camera's JPEG, or any image whose Exif
-// or profile names sRGB. Without such information it is linear, as raw images are.
+// Whether the file declares its numbers to be for display: a camera's JPEG, or any image whose Exif
+// or profile names sRGB. Otherwise it is linear, as raw images are.
 bool says_srgb(const std::filesystem::path& file) {
     if (is_raw_name(file)) return false;
     const std::string extension = lower_case(file.extension().string());
@@ -107,8 +107,8 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     return look;
 }
 
-// Learns how the images differ, and omits those that lack light; if each has its own exposure,
-// brings the rest to one.
+// Learns how the images differ, and omits those that lack light; with one exposure per image,
+// brings the rest to a common one.
 void judge_looks(const Survey& survey, SurveyLook& look) {
     const bool has_levels = survey.camera.exposure_by == ExposureBy::Model;
     if (survey.dropouts == Dropouts::Ignore && !has_levels) return;
@@ -128,7 +128,7 @@ void judge_looks(const Survey& survey, SurveyLook& look) {
     look.images = std::move(lit);
 }
 
-// Which files, in their order, and whether the gain is taken from them.
+// The files to examine, in order, and whether each contributes to the gain.
 struct Choice {
     std::size_t file = 0;
     bool is_for_gain = false;
@@ -151,7 +151,7 @@ std::vector<Choice> chosen(std::size_t files, const LookRequest& request) {
 
 SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWatch& watch) {
     LookRequest wanted = request;
-    // Floors' patterns hide the tilts of a few images.
+    // In a few images, floor patterns hide the tilts.
     if (survey.light.map_as_radians) wanted.most_images *= 2;
     const std::vector<Choice> choices = chosen(survey.files.size(), wanted);
     std::vector<std::optional<ImageLook>> looks(choices.size());

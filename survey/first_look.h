@@ -19,20 +19,19 @@ namespace aphotic {
 
 struct LookRequest {
     std::size_t most_images = 16;
-    std::size_t gain_images =
-        0;                     // that the gain is derived from, whether or not they are among these
-    double least_light = 0.0;  // of the map's brightest: darker pixels do not count
+    std::size_t gain_images = 0;  // for the gain, whether or not they are among these
+    double least_light = 0.0;     // of the map's brightest: darker pixels are ignored
     std::size_t jobs = 1;
 };
 
 struct SurveyLook {
     std::vector<ImageLook> images{};   // usable ones
-    std::size_t count = 0;             // that were examined
-    DropoutScales scales{};            // of which images that lack light were omitted
-    std::optional<Suspicion> doubt{};  // of the rig, for what its strobes seem to do
-    std::string first_why{};  // why the first of the others is unusable, and which; or empty
+    std::size_t count = 0;             // of images examined
+    DropoutScales scales{};            // by which images that lack light were omitted
+    std::optional<Suspicion> doubt{};  // about the rig, from its strobes' apparent behaviour
+    std::string first_why{};           // the first unusable image, and why; or empty
 
-    // If there are none: what cannot be done to them, "read", and why.
+    // A message if none is usable: what cannot be done to them, such as "read", and why.
     [[nodiscard]] std::string none_can_be(std::string_view done) const;
 };
 
@@ -43,8 +42,8 @@ struct SurveyLook {
 // Warnings from the reader of the navigation.
 [[nodiscard]] std::vector<Suspicion> suspicions_of(const std::optional<Navigation>& navigation);
 
-// What looks wrong about the navigation and about images of unknown light, also told to the watch.
-// An error for the whole survey if none of them can be read.
+// What looks wrong about the navigation and about images of unknown light, also reported to the
+// watch. An InputError for the whole survey if none of the images examined can be read.
 [[nodiscard]] std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                                    const CameraNumbers& camera,
                                                    const std::optional<Navigation>& navigation,

@@ -21,7 +21,7 @@ double median_of(const DepthMap& map) {
     return upper_median(depths);
 }
 
-// Of another unit all would be too near or too far to be lit.
+// In the wrong unit, the whole floor would be too near or too far to be lit.
 void require_unit(const Survey& survey, const ImageFile& file, const DepthMap& map) {
     constexpr double kOtherUnit = 50.0;
     const std::optional<Sled> sled = sled_of(survey, file);
@@ -54,7 +54,7 @@ DepthMap seen_of_mesh(const Survey& survey, const ImageFile& file, PlaneSize siz
 
 enum class Detail { Full, Rough };
 
-// Rough: a mesh is seen by fewer rays.
+// Rough: a mesh is sampled by fewer rays.
 DepthMap lit_depth_map(const Survey& survey, const ImageFile& file, Detail detail = Detail::Full) {
     constexpr int kRough_px = 256;
     PlaneSize size = survey.light.size;

@@ -49,7 +49,7 @@ MapAsRadians map_as_radians(const Rig& rig,
     }
     if (is_level) return {};
     try {
-        // Of its own, so that the maps of a sled that is as steady as that stay as they are.
+        // A separate maker, so that the maps of a sled this steady stay unchanged.
         const auto maker =
             std::make_shared<const LightmapMaker>(rig, paths_of_survey(rig, sleds), options);
         return [maker, in_radians](const Sled& sled) -> std::optional<Lightmap> {
@@ -64,7 +64,7 @@ MapAsRadians map_as_radians(const Rig& rig,
     }
 }
 
-// Wherever the curves came from and whatever they are called.
+// Independent of the curves' source and names.
 std::string response_digest(const Sensor& sensor) {
     std::string text;
     const std::vector<const Spectrum*> curves = sensor.curves();
@@ -89,7 +89,7 @@ void require_map_for(PlaneSize images, const ExrReader& map, const std::filesyst
                      images.height_px);
 }
 
-// Of all lamps, relative, after this way through the water.
+// The light of all lamps, relative, after this path through the water.
 std::function<double(double)> light_after(const Rig& rig, double path_m) {
     return [&rig, path_m](double lambda_nm) {
         double flux = 0.0;
@@ -105,7 +105,7 @@ std::function<double(double)> light_on_its_way(const Rig& rig) {
     return light_after(rig, 2.0 * rig.sled.altitude_m);
 }
 
-// What the floor gives back of the light that each channel would see of a white one.
+// The share of the light that the floor returns, relative to a white floor, by channel.
 struct GivenBack {
     const Rig& rig;
     PerChannel of_floor{};
@@ -133,7 +133,7 @@ std::vector<Sled> sleds_of(const std::optional<Navigation>& navigation,
         try {
             sleds.push_back(navigation->pose_of(file.source).sled);
         } catch (const InputError&) {
-            // It is said of the image when its turn comes.
+            // The image is reported when its turn comes.
         }
     }
     return sleds;

@@ -32,28 +32,28 @@ struct LightAt {
     PlaneSize size;
     std::optional<PlaneSize> rig_size{};  // if the rig's size was scaled to its images'
     bool is_grey = false;                 // the maps have equal R, G and B: a mono camera
-    // Whether the maps have the veil; empty: the water does not scatter, as far as is known.
+    // Whether the maps include the veil; empty: the water is not known to scatter.
     std::optional<bool> has_veil{};
-    std::optional<double> veil_tolerance{};  // where they have one of the rig's
+    std::optional<double> veil_tolerance{};  // if they include a rig's
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
-    // The same on a relief, of a rig.
+    // The same on a relief, for a rig.
     std::shared_ptr<const ReliefMapMaker> relief{};
     // The map with the navigation's tilts taken as radians instead of degrees; empty if that puts a
     // strobe below the floor, or if they are surely degrees.
     std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
     // To show the images divided by the maps; empty: the camera is unknown.
     std::function<CameraToSrgb()> to_srgb{};
-    std::optional<PerChannel> floor_colour{};           // empty: nothing is known of the floor
-    std::optional<PerChannel> floor_colour_in_water{};  // by the light that images were taken in
+    std::optional<PerChannel> floor_colour{};           // empty: the floor is unknown
+    std::optional<PerChannel> floor_colour_in_water{};  // in the light at the camera
 };
 
 // The largest error of a correction's veil, relative to the signal: below the images' noise and the
 // model's error.
 inline constexpr double kVeilOfCorrection = 1e-3;
 
-// The poses of these images, skipping those without, since without navigation all have one; and the
+// The poses of these images, without those that have none, and empty without navigation; and the
 // paths that they see, which maps must cover.
 [[nodiscard]] std::vector<Sled> sleds_of(const std::optional<Navigation>& navigation,
                                          const std::vector<ImageFile>& files);
@@ -67,21 +67,21 @@ inline constexpr double kVeilOfCorrection = 1e-3;
                                    double veil_tolerance = kVeilOfCorrection,
                                    bool has_relief = false);
 
-// An InputError unless its maps suit such an image: of its size, and grey for a mono camera.
+// An InputError unless its maps match such an image: its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);
 
-// One map, whatever the pose: channels R, G and B of an EXR, and veil.R, veil.G and veil.B if it
-// has them. Samples that are not finite, as where nothing was observed, are dark. An InputError if
-// it is far larger than the images that it is for, if their size is known.
+// One map, whatever the pose: channels R, G and B of an EXR, and veil.R, veil.G and veil.B if
+// present. Samples that are not finite, as where nothing was observed, are dark. An InputError if
+// it is far larger than the survey's images, if their size is known.
 [[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file,
                                    bool has_veil = true,
                                    std::optional<PlaneSize> images = std::nullopt);
 
-// Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
+// Of the rig's floor: the share of the lamps' own light, without water, that it returns to each
 // channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
 [[nodiscard]] PerChannel floor_colour(const Rig& rig);
 
-// Of the rig's camera, in the light of its lamps after the way to the floor and back at the rig's
+// Of the rig's camera, in the light of its lamps after the path to the floor and back at the rig's
 // own altitude.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Rig& rig);
 

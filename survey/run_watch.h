@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reports from work on a survey, for whoever shows them: a terminal, a window, nobody. Calls never
-// overlap.
+// Reports from work on a survey to whatever displays them, such as a terminal or a window. Calls
+// never overlap.
 #pragma once
 
 #include "survey/survey_check.h"

@@ -16,7 +16,7 @@ constexpr int kCoarse_px = 4 * kCells;  // along the longer side
 constexpr double kCoarseError = 1e-3;
 constexpr double kCoarseVeil = 1e-2;
 
-// What makes maps of some strobes alone, made when the first image asks for it.
+// Makers of maps for subsets of the strobes, each created on first use.
 template <typename Maker>
 struct MakersOfLit {
     using Make = std::function<std::shared_ptr<const Maker>(const Rig& lit)>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of each strobe of a rig, where an image was taken: in cells (survey/dropouts.h), from
-// small lightmaps, to detect which strobes fired; and for those that did, at every pixel. Strobes'
-// light adds up, so a strobe's is the lightmap of a rig that has no other.
+// The light of each strobe of a rig where an image was taken: in cells (survey/dropouts.h), from
+// small lightmaps, to detect which strobes fired; and for those that did, at every pixel. The light
+// of strobes adds up, so that of one strobe is the lightmap of a rig that has no other.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -23,8 +23,8 @@ namespace aphotic {
 struct StrobesAt {
     std::vector<std::string> names{};
     // These are called from several threads.
-    std::function<std::vector<CellPlane>(const Sled& sled)> cells{};  // by strobe; empty: not known
-    // Of all except these, whose bits are set; not all of them.
+    std::function<std::vector<CellPlane>(const Sled& sled)> cells{};  // by strobe; empty: unknown
+    // Without the strobes whose bits are set, at most all but one.
     std::function<Lightmap(const Sled& sled, std::uint64_t out)> map_without{};
     // The same for images with depth maps.
     std::function<std::vector<CellPlane>(

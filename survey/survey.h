@@ -19,9 +19,9 @@ struct Survey {
     std::vector<ImageFile> files;
     std::optional<Navigation> navigation{};  // null: nothing here depends on a pose
     std::optional<DepthMaps> depth{};        // null: the floor is the navigation's plane
-    LightAt light{};                         // without maps, as by default, it is not known
+    LightAt light{};                         // without maps, the default, it is unknown
     CameraNumbers camera;
-    StrobesAt strobes{};  // none, as by default: the light is not known strobe by strobe
+    StrobesAt strobes{};  // by default, the light per strobe is unknown
     Dropouts dropouts = Dropouts::Mark;
 
     // An InputError if the navigation has no pose for it.

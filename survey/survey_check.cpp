@@ -25,29 +25,29 @@ constexpr std::size_t kBlue = 2;
 constexpr double kPerCent = 100.0;
 
 constexpr double kNearTop = 0.9;
-constexpr double kLeastTop = 64.0;  // six whole numbers and more lie between 0.9 of it and it
+constexpr double kLeastTop = 64.0;  // at least six whole numbers lie between 0.9 of it and it
 constexpr double kFewNumbers = 64.0;
 constexpr double kPile = 10.0;
 constexpr double kPileShare = 1e-4;
-constexpr double kPileLeast = 16.0;  // samples: in a small image one is a large share
+constexpr double kPileLeast = 16.0;  // samples: in a small image, one is a large share
 
 constexpr double kGreenSites = 0.1;
 constexpr double kOtherSites = 0.25;
 
-// Altitudes that vary less are one altitude: an altimeter's own noise is some centimetres, and a
-// slope over noise is 0.
+// Altitudes that vary less count as one: an altimeter's own noise is some centimetres, and a slope
+// over noise is 0.
 constexpr double kSpread_m = 0.05;
-// Of logarithms, as a standard deviation: maps that vary less are alike. Rounding is far below, and
+// Standard deviation of logarithms: maps that vary less count as equal. Rounding is far below, and
 // floors vary by more.
 constexpr double kSpread = 0.01;
 constexpr double kSlope = 0.5;
-constexpr double kTurned = 1.0;  // a slope of 1 - kTurned has turned round
+constexpr double kTurned = 1.0;  // a slope of 1 - kTurned is reversed
 constexpr double kStandardErrors = 5.0;
 constexpr double kGains = 100.0;
 constexpr double kLikeness = 0.5;
 constexpr double kLikeAltitudes = 0.5;
-// Fewer than of other lines: sleds whose tilts all are so small are rare to begin with, and floors'
-// own patterns leave 16 images of degrees an error of a fourth.
+// Fewer than for other lines: sleds whose tilts are all so small are rare, and the floors' own
+// patterns leave 16 images in degrees an error of a fourth.
 constexpr double kErrorsOfAttitude = 3.0;
 
 constexpr double kOtherUnit = 2.5;
@@ -59,7 +59,7 @@ constexpr double kEven = 0.2;
 constexpr double kOffset = 0.01;
 constexpr double kVaried = 4.0;
 constexpr double kMostOfDarkest = 0.5;
-constexpr double kBlockNoise = 0.1;  // by which b may exceed what is darkest, of noise
+constexpr double kBlockNoise = 0.1;  // by which b may exceed the darkest block, due to noise
 
 constexpr int kLookBlocksAcross = 16;
 constexpr int kBlocksDown = 12;
@@ -72,7 +72,7 @@ struct Block {
     double samples = 0.0;
 };
 
-// Of one channel, by the samples that count; a mono camera's are green.
+// For one channel, from the samples that count; a mono camera's are green.
 template <typename Counts>
 std::vector<Block> blocks_of(const RawImage& raw,
                              const SensorLevels& levels,
@@ -103,10 +103,10 @@ std::vector<Block> blocks_of(const RawImage& raw,
 
 struct Line {
     double slope = 0.0;
-    double error = std::numeric_limits<double>::infinity();  // standard, of the slope
+    double error = std::numeric_limits<double>::infinity();  // standard error of the slope
 };
 
-// Of products, each less its mean.
+// Of products of deviations from the means.
 struct Sums {
     double xx = 0.0;
     double xy = 0.0;
@@ -124,7 +124,7 @@ Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
     return {.xx = dx.square().sum(), .xy = (dx * dy).sum(), .yy = dy.square().sum()};
 }
 
-// Logarithms of one and the other.
+// Logarithms of pairs.
 struct LogPairs {
     std::vector<double> x{};
     std::vector<double> y{};
@@ -139,8 +139,7 @@ struct LogPairs {
     }
 };
 
-// y = slope x + const by least squares; no line of too few points, or of points too near each
-// other.
+// y = slope x + const by least squares; unknown if the points are too few or too close together.
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
     if (x.size() < kEnoughImages) return {};
     const Sums sums = sums_of(x, y);
@@ -150,8 +149,8 @@ Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
     return {slope, std::sqrt(std::max(0.0, sums.yy - slope * sums.xy) / freedom / sums.xx)};
 }
 
-// One slope for all images, each of which counts as its x varies; its error by how the images
-// differ. None of too few images, or where x varies too little over all of them.
+// One slope for all images, each weighted by the variation of its x; its error from the differences
+// between images. Unknown if the images are too few, or if x varies too little over all of them.
 Line line_of_all(std::span<const ImageLook> looks, const auto& likeness_of, double least_spread) {
     double xx = 0.0;
     double xy = 0.0;
@@ -179,7 +178,7 @@ bool has_light(const ImageLook& look) {
            std::ranges::all_of(look.map_mean, is_light);
 }
 
-// Those with light in every channel, of which lines are laid.
+// Those with light in every channel, to which lines are fitted.
 std::vector<ImageLook> lit(std::span<const ImageLook> looks) {
     std::vector<ImageLook> lit;
     std::ranges::copy_if(looks, std::back_inserter(lit), has_light);
@@ -266,7 +265,7 @@ std::string range_of(std::span<const ImageLook> looks) {
     return fmt::format("{:g} to {:g} m", *lowest.altitude_m, *highest.altitude_m);
 }
 
-// Logarithms of a channel over the images: of their light, and of themselves.
+// Logarithms of one channel over the images: of the light, and of the images themselves.
 struct Brightness {
     std::vector<double> light;
     std::vector<double> images;
@@ -317,7 +316,7 @@ constexpr std::array kAltitudeUnits{AltitudeUnit{"millimetres", 1e-3},
                                     AltitudeUnit{"fathoms", 1.8288},
                                     AltitudeUnit{"kilometres", 1e3}};
 
-// Another unit, or another column.
+// A wrong unit, or a wrong column.
 bool check_unit(std::span<const ImageLook> looks,
                 std::optional<double> rig_altitude_m,
                 std::vector<Suspicion>& found) {
@@ -347,7 +346,8 @@ bool check_unit(std::span<const ImageLook> looks,
     return true;
 }
 
-// Of the power that the images' brightness is of the maps': over the images, and within each.
+// The power of the maps' light that the images' brightness follows: over the images, and within
+// each.
 struct Powers {
     Line over;
     Line within;
@@ -369,7 +369,7 @@ bool is_known(const Line& line) {
     return std::isfinite(line.error);
 }
 
-// Surely less than 1, and near to this.
+// Near to this power, and certainly less than 1.
 bool is_near(const Line& line, double power, double within) {
     return is_known(line) && std::abs(line.slope - power) <= within &&
            1.0 - line.slope >= kStandardErrors * line.error;
@@ -409,7 +409,7 @@ bool check_corrected(const Powers& powers, std::vector<Suspicion>& found) {
     return true;
 }
 
-// A channel of an image.
+// For one channel of an image.
 struct Darkness {
     std::size_t channel = 0;
     double darkest = 0.0;  // d
@@ -422,11 +422,11 @@ struct Offset {
     double error = std::numeric_limits<double>::infinity();
 };
 
-// d = b (1 - phi_c rho) + phi_c rho q by least squares, each row over its d, for errors are
-// relative; phi of the factor before b is that of the last step.
+// d = b (1 - phi_c rho) + phi_c rho q by least squares, each row divided by its d since errors are
+// relative; the phi that multiplies b is that of the previous step.
 Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
     constexpr int kRefinements = 4;
-    // Channels of an image show one floor: they are one observation of it.
+    // The channels of an image show one floor: they count as one observation.
     const double freedom = static_cast<double>(images) - 4.0;
     if (all.empty() || freedom < 1.0) return {};
     Eigen::Vector4d fit(0.0, 1.0, 1.0, 1.0);
@@ -442,7 +442,7 @@ Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
         }
         const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
         const Eigen::Matrix4d normal = rows.transpose() * rows;
-        // Of a mono camera two channels have no row.
+        // For a mono camera, two channels have no row.
         const Eigen::Matrix4d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
         fit = inverse * (rows.transpose() * ones);
         offset = {.b = fit(0),
@@ -462,8 +462,8 @@ bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found
                                .darkest = look.frame.darkest[c],
                                .median = look.frame.median[c],
                                .share = look.frame.map_share[c]};
-            if (one.median == 0.0) continue;                               // of a mono camera
-            if (!(one.darkest > 0.0) || !(one.share > 0.0)) return false;  // it does fall to black
+            if (one.median == 0.0) continue;                               // a mono camera
+            if (!(one.darkest > 0.0) || !(one.share > 0.0)) return false;  // it reaches black
             least = std::min(least, one.darkest);
             brightest = std::max(brightest, one.median);
             all.push_back(one);
@@ -472,7 +472,7 @@ bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     const Offset offset = offset_of(all, looks.size());
     const double b = offset.b;
     const double error = offset.error;
-    // Of light that hardly varies anything is an offset.
+    // If the light hardly varies, anything fits as an offset.
     const auto is_varied = [&](std::size_t c) {
         double dimmest = std::numeric_limits<double>::infinity();
         double most = 0.0;
@@ -519,8 +519,7 @@ void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found
                              has_poses ? "altitude column, " : "")});
 }
 
-// Whether the images are like that other map, and not like their own: a slope of 1, not of 0. The
-// slope, or none.
+// The slope if the images are like the other map (1) and unlike their own (0); otherwise empty.
 std::optional<double> like_other(std::span<const ImageLook> looks, Likeness ImageLook::*other) {
     const auto [slope, error] = line_of_all(
         looks, [other](const ImageLook& look) -> const Likeness& { return look.*other; }, kSpread);
@@ -540,7 +539,7 @@ void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
                              *slope)});
 }
 
-// Of the navigation's altitudes with the depths of maps, as logarithms; NaN of a few.
+// The correlation of the logarithms of altitudes and of the maps' depths; NaN if they are few.
 double likeness_of_altitudes(std::span<const ImageLook> looks) {
     Eigen::ArrayX2d both(std::ssize(looks), 2);
     Eigen::Index count = 0;
@@ -690,7 +689,7 @@ std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic m
         return std::nullopt;
     std::string what = "red over blue " + words_of_turned(ratio) + ": red and blue are swapped";
     if (is_bayer(mosaic)) {
-        // A pattern with red and blue in each other's place begins a column and a row further on.
+        // A pattern with red and blue swapped is the same pattern shifted by a column and a row.
         what += fmt::format("; --bayer {} corrects this", mosaic_name(shifted(mosaic, 1, 1)));
     }
     return Suspicion{.about = "bayer", .what = std::move(what)};
@@ -706,13 +705,13 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
     const std::size_t before = found.size();
     const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);
     const Powers powers = powers_of(lit_looks, has_line);
-    // The first of these explains what the others would say.
+    // The first problem found explains the symptoms of the others.
     if (!check_unit(looks, rig_altitude_m, found) && !check_black(lit_looks, found) &&
         !check_encoding(lit_looks, powers, found) && !check_corrected(powers, found)) {
         if (has_line) check_altitude(lit_looks, found);
         check_gains(lit_looks, found);
     }
-    // At other altitudes colours change otherwise, too.
+    // At wrong altitudes colours vary wrongly, too.
     if (has_line && found.size() == before) {
         if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);
     }
