@@ -83,7 +83,7 @@ std::vector<float> AltitudeExponential::level(std::span<const float> plane,
         const auto& [a, b, c] = fits_[i];
         const float here = a * std::exp(b * h) + c;
         const float wanted = a * std::exp(b * h0) + c;
-        // Where no light was seen there is nothing to level.
+        // Without light there is nothing to correct.
         levelled[i] = here > 0.0F ? plane[i] * std::min(wanted / here, kMostGain) : plane[i];
     }
     return levelled;

@@ -21,7 +21,7 @@ struct Estimate {
     double standard_error = kNaN;
 };
 
-// Of the mean of `kept` samples whose squares about it add up to `squares`.
+// Of the mean of `kept` samples whose squared deviations add up to `squares`.
 double error_of_mean(double squares, std::size_t kept) {
     if (kept < 2) return kNaN;
     const auto n = static_cast<double>(kept);
@@ -75,7 +75,7 @@ Estimate trimmed_mean_of(std::span<float> samples, double trim) {
     constexpr double kRounding = 1e-9;  // 0.29 of 100 samples are 29
     const auto cut = static_cast<std::size_t>(trim * static_cast<double>(n) + kRounding);
     const double least = ranked(samples, cut);
-    // Beyond the least ones alone, so that they stay where they are.
+    // Only beyond the least ones, so that those keep their places.
     const double most = ranked(samples.subspan(cut), n - 1 - 2 * cut);
     const std::span<const float> kept = samples.subspan(cut, n - 2 * cut);
     const double sum = std::accumulate(kept.begin(), kept.end(), 0.0);
@@ -104,7 +104,7 @@ std::vector<float> in_all_channels(const std::vector<float>& plane) {
 // A few places at a time, so that each image is read by whole cache lines.
 constexpr std::size_t kPlaces = 64;
 
-// Of `many` places from the first on, up to kPlaces.
+// For `many` places from the first on, up to kPlaces.
 void average_places(std::span<const std::vector<float>> images,
                     std::size_t first,
                     std::size_t many,

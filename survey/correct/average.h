@@ -3,14 +3,14 @@
 // Many images of the sea floor averaged into the pattern of light that they share, sample by
 // sample.
 //
-// Of n samples x_1 <= ... <= x_n of one place, with their standard error E:
+// For n samples x_1 <= ... <= x_n of one place, with their standard error E:
 //
 //   mean     E = s / sqrt(n)                                 s: of n - 1
 //   median   E = (x_(n-k+1) - x_k) / (2 z)                   McKean & Schrader 1984, with
 //            k = max(1, round((n+1)/2 - z sqrt(n/4)))        z = 2.5758, of 99 %
 //   trimmed  the mean without the g = floor(trim n) least and as many largest;
 //            E = sqrt(S / (h (h-1))), h = n - 2g             Yuen 1974; S: the sum of squares
-//            about the mean after each sample cut off has become the nearest one kept
+//            about the mean, each trimmed sample replaced by the nearest one kept
 //
 // Both remain valid if x is not normal; the median's is coarse below some ten samples. With trim =
 // 0 the trimmed mean and its error are the mean's. Equal samples give E = 0.

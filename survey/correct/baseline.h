@@ -77,12 +77,13 @@ class BaselineCorrector {
     [[nodiscard]] bool learns() const { return passes() > 0; }
     [[nodiscard]] bool needs_altitude() const { return aphotic::needs_altitude(baseline_); }
 
-    // All of one size and mosaic, finite. Keeps moments, and discards the image.
+    // The images must have one size and mosaic and be finite. Keeps moments, and discards the
+    // image.
     void learn(const RawImage& image, double altitude_m);
-    // When all are learned. An InputError if they were too few.
+    // Call it after the last image of a pass. An InputError if they were too few.
     void end_pass(std::size_t threads);
 
-    // Images learned in the bin of that altitude, or in all.
+    // The number of images learned in the bin of that altitude, or in all.
     [[nodiscard]] std::size_t learned(double altitude_m) const;
 
     // An InputError if it learns and nothing was learned at that altitude.

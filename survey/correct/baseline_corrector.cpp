@@ -56,7 +56,7 @@ class BaselineRun : public Corrector {
         report.srgb->balance = balance_;
     }
 
-    // Of all that is learned from.
+    // Covers all inputs to the learning.
     [[nodiscard]] std::string learned() const override {
         std::string all = fmt::format("{}\n", fmt::join(balance_, " "));
         if (!method_.learns()) return all;
@@ -163,7 +163,7 @@ class BaselineRun : public Corrector {
     Survey level_alone_;
     DropoutScales scales_;
     PerChannel balance_{};
-    RawImage first_;                               // learned; its samples aside
+    RawImage first_;                               // the first learned, without its samples
     std::map<fs::path, std::string> not_learned_;  // by the image's name, and why
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 struct Pair {
     const ImageFile* file = nullptr;
-    RawImage before;  // small, without black
+    RawImage before;  // small, less the black level
     RawImage after;
 };
 
@@ -60,7 +60,7 @@ RawImage small(RawImage image) {
     return result;
 }
 
-// Integers were 0 to 1 over their range.
+// Integer samples are scaled to 0 to 1.
 RawImage result_of(const ImageFile& file, Mosaic taken, const CorrectionOptions& options) {
     const fs::path written = options.run.folder / results_of(file, options.run.format).front();
     CameraNumbers numbers;
@@ -84,7 +84,7 @@ float exposure_of(const std::vector<Pair>& pairs) {
     return *bright > 0.0F ? static_cast<float>(kBrightLevel) / *bright : 1.0F;
 }
 
-// The library writes files, not bytes.
+// The library only writes files.
 SheetPicture picture_of(const RawImage& image,
                         const Eigen::Matrix3d& matrix,
                         const fs::path& folder) {
@@ -118,7 +118,7 @@ std::vector<SheetImage> contact_sheet(const Survey& survey,
                         .before = small(std::move(taken.raw)),
                         .after = small(result_of(*files[i], mosaic, options))};
         } catch (const InputError&) {
-            pairs[i] = {};  // gone since
+            pairs[i] = {};  // removed since
         }
     });
     std::erase_if(pairs, [](const Pair& pair) { return pair.file == nullptr; });

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Some images of a corrected survey, evenly spread over it, before and after, small.
+// Thumbnails of some images of a corrected survey, evenly spread over it, before and after.
 //
 //   before = sRGB( k (raw - black) )     the camera's numbers; k puts the kBrightShare quantile of
 //                                        all samples of all images at kBrightLevel (preview.h)
-//   after  = sRGB( e M b v )             as result_files.h has it, from the files as they were
-//   written
+//   after  = sRGB( e M b v )             as in result_files.h, from the files as written
 //
-// Each side has one exposure for all images, so that they show as dark, bright and uneven as they
+// Each side has one exposure for all images, so that they appear as dark, bright and uneven as they
 // are.
 #pragma once
 

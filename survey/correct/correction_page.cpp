@@ -179,7 +179,7 @@ PageList doubts(const RunOutcome& run) {
          {"clipped", "beyond what the file holds"}}};
     PageList items;
     for (const auto& [name, words] : kWords) {
-        // The blank does not break.
+        // A non-breaking space.
         items.emplace_back(
             name, fmt::format("{:.3g}\xC2\xA0%: {}", 100.0 * run.doubtful_share(name), words));
     }

@@ -38,7 +38,7 @@ std::optional<SurveyGain> gain_in(const nlohmann::json& notes) {
     return is_gain ? std::optional(noted) : std::nullopt;
 }
 
-// Identifies cameras and rigs; with one map for all, no rig_sha256.
+// For the digests of cameras and rigs; with one map for all, there is no rig_sha256.
 std::string text_in(const nlohmann::json& settings, const char* key) {
     const auto found = settings.find(key);
     return found != settings.end() && found->is_string() ? found->get<std::string>() : "";
@@ -231,7 +231,7 @@ PerChannel wanted_middle(const Survey& survey, const CorrectionOptions& options)
     return {middle, middle, middle};
 }
 
-// The user's gain, as numbers or as a folder that has them.
+// The user's gain, as numbers or from a folder of results.
 std::optional<SurveyGain> given_gain(const Survey& survey,
                                      const CorrectionOptions& options,
                                      std::vector<Suspicion>& doubts) {
@@ -243,7 +243,7 @@ std::optional<SurveyGain> given_gain(const Survey& survey,
                       .middle = wanted_middle(survey, options)};
 }
 
-// With a given gain, how much light the survey's median has is unknown.
+// With a given gain, the light of the survey's median is unknown.
 bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
     return !gain.images.empty() || options.middle;
 }
@@ -253,7 +253,7 @@ class ModelCorrector : public Corrector {
     ModelCorrector(const Survey& survey, const CorrectionOptions& options)
         : survey_(survey), options_(options), given_(given_gain(survey, options, doubts_)) {}
 
-    // A change to these texts makes every folder's images be redone.
+    // Changing these texts invalidates the images in every folder.
     [[nodiscard]] Json settings() const override {
         const LightAt& light = survey_.light;
         Json json{{survey_.navigation || survey_.depth ? "rig_sha256" : "map_sha256", light.digest},
@@ -350,7 +350,7 @@ class ModelCorrector : public Corrector {
   private:
     const Survey& survey_;
     const CorrectionOptions& options_;
-    std::vector<Suspicion> doubts_;  // about what is given
+    std::vector<Suspicion> doubts_;  // about the given gain
     std::optional<SurveyGain> given_;
     SurveyGain gain_;
     DropoutScales scales_;
@@ -376,8 +376,8 @@ SrgbEncoding shown_as(const Survey& survey,
     if (survey.light.to_srgb) camera = survey.light.to_srgb();
     std::optional<PerChannel> middle;
     if (is_middle_known(options, gain)) middle = gain.middle;
-    // The floor was assigned its colour under the lamps; in the light that reaches the camera it
-    // has another, and only with that one is grey grey.
+    // The floor was given its colour under the lamps; in the light that reaches the camera its
+    // colour differs, and only that colour makes grey neutral.
     PerChannel balance{1.0, 1.0, 1.0};
     const auto& by_lamps = survey.light.floor_colour;
     const auto& in_water = survey.light.floor_colour_in_water;

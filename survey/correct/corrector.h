@@ -44,8 +44,8 @@ namespace aphotic {
 struct SurveyGain {
     PerChannel gain{};
     PerChannel middle{};
-    std::vector<std::string> images{};  // that it was derived from; empty if it was given
-    std::string folder{};               // whose gain it is; empty: this survey's own
+    std::vector<std::string> images{};  // from which it was derived; empty if it was given
+    std::string folder{};               // from which it was taken; empty: this survey's own
 };
 
 // The median of the middle quotients of the images examined. An InputError if there is none.
@@ -81,16 +81,16 @@ struct SurveyGain {
                                                      const nlohmann::ordered_json& settings);
 
 struct CorrectionOptions {
-    ImageRunOptions run{};  // of a share: its own folder
+    ImageRunOptions run{};  // for a share of the images, its own folder
     WorkShare share{};      // of the images to correct; learning uses all
-    bool report = false;    // also write report.html, a page to look at (correction_page.h)
+    bool report = false;    // also write report.html (correction_page.h)
 
-    std::optional<Baseline> baseline{};  // none: by the model
+    std::optional<Baseline> baseline{};  // empty: the model
     BaselineOptions of_baselines{};
 
-    // Of the model.
+    // For the model.
     std::vector<double> gain{};  // one for all channels, or three; empty: derived from the survey
-    std::filesystem::path gain_from{};  // a folder of results that has one; empty: none
+    std::filesystem::path gain_from{};  // a folder of results to take it from; empty: none
     std::optional<double> middle{};     // empty: the floor's colour, or grey if it is unknown
     std::size_t gain_images = 16;
     NoiseLimit limit{};
@@ -100,16 +100,16 @@ struct CorrectionOptions {
 };
 
 struct CorrectionReport {
-    std::string_view baseline{};  // its name; empty: by the model
+    std::string_view baseline{};  // its name; empty: the model
     std::string folder;
     nlohmann::ordered_json settings;
     std::string settings_sha256{};
     SurveyGain gain{};                   // of the model
     std::optional<SrgbEncoding> srgb{};  // empty: linear only
-    std::vector<ImageLook> looks{};      // of the model: at images before the first was corrected
+    std::vector<ImageLook> looks{};      // for the model: images examined before correction
     std::vector<Suspicion> looks_wrong{};
-    std::string not_checked{};        // and why; or empty
-    std::optional<RunOutcome> run{};  // empty: it has not ended
+    std::string not_checked{};        // what was not checked, and why; or empty
+    std::optional<RunOutcome> run{};  // empty: the run has not ended
     double seconds = 0.0;
 };
 
@@ -124,19 +124,19 @@ class Corrector {
     // learned.
     [[nodiscard]] virtual nlohmann::ordered_json settings() const = 0;
 
-    // Before anything is written: examines some images, tells the watch what looks wrong, and
+    // Before anything is written: examines some images, reports to the watch what looks wrong, and
     // completes the report, which already has its settings. earlier: the notes of the previous run
     // in this folder, or empty; with the same settings, what was learned then is still valid.
     virtual void look(const std::string& earlier,
                       const RunWatch& watch,
                       CorrectionReport& report) = 0;
 
-    // What was learned, or from what; and for an image, its pose as far as it matters. An
-    // InputError for that image if it has none.
+    // What was learned, or the inputs to it; and an image's pose as far as it matters. An
+    // InputError for an image without one.
     [[nodiscard]] virtual std::string learned() const = 0;
     [[nodiscard]] virtual std::string pose_of(const ImageFile& file) const = 0;
 
-    // Before the first image to be corrected, if there is one.
+    // Called before the first image to be corrected, if any.
     virtual void learn(const RunWatch& /*watch*/) {}
 
     // Whether the strobes fired (survey/dropout_check.h): recorded in the image. An InputError for
@@ -148,13 +148,13 @@ class Corrector {
     [[nodiscard]] virtual CorrectedImage correct(SurveyImage& taken,
                                                  const ImageFile& file) const = 0;
 
-    // What a sample is divided by if the format ends at 1.
+    // The divisor of samples if the format's range ends at 1.
     [[nodiscard]] virtual float white_of(const SurveyImage& /*taken*/) const { return 1.0F; }
 };
 
-// Both hold the survey and the options, which must outlive them. An InputError for gains that are
-// not one or three numbers, or that the other survey's folder does not contain; for a baseline that
-// needs altitudes and a survey without navigation.
+// Both hold references to the survey and the options, which must outlive them. An InputError for
+// gains that are not one or three numbers, or that are missing from the other survey's folder; or
+// for a baseline that needs altitudes and a survey without navigation.
 [[nodiscard]] std::unique_ptr<Corrector> model_corrector(const Survey& survey,
                                                          const CorrectionOptions& options);
 [[nodiscard]] std::unique_ptr<Corrector> baseline_corrector(const Survey& survey,

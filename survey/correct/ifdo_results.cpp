@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kCalibration = "image-photometric-calibration";
 
-// As navigation knows an image.
+// The image's key in the navigation.
 std::string item_key(const fs::path& image) {
     return without_extension(image.filename()).string();
 }
@@ -58,7 +58,7 @@ IfdoJson calibration_of(const Survey& survey, const CorrectionReport& report, co
     return json;
 }
 
-// Ours over what was there, also within an object.
+// Overwrites existing fields, also within an object.
 void put(IfdoJson& fields, const std::string& key, const IfdoJson& value) {
     if (value.is_object() && fields.contains(key) && fields[key].is_object())
         fields[key].update(value);
@@ -87,7 +87,7 @@ std::string uuid_of(std::string_view text) {
     constexpr std::size_t kVariant = 16;
     std::string digits = sha256_of_text(text).substr(0, 32);
     digits[kVersion] = '4';
-    // The variant is the bits 10, before two that are free.
+    // The variant is the bits 10, followed by two free ones.
     constexpr std::string_view kHex = "0123456789abcdef";
     digits[kVariant] = kHex[8 + kHex.find(digits[kVariant]) % 4];
     for (const std::size_t hyphen : {8U, 13U, 18U, 23U}) digits.insert(hyphen, 1, '-');
@@ -112,7 +112,7 @@ fs::path ifdo_place(const fs::path& source, const fs::path& folder) {
 
 namespace {
 
-// Of one of the files that are made of each image.
+// For one kind of the files made from each image.
 IfdoResults write_ifdo(const Ifdo& of_raw,
                        const fs::path& place,
                        const Survey& survey,

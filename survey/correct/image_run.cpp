@@ -29,7 +29,7 @@ fs::path place_of(const fs::path& file) {
     return circle ? fs::absolute(file).lexically_normal() : place;
 }
 
-// An image in a folder of the survey with the name of the encoded results' folder.
+// Two coincide if an image lies in a folder named like that of the encoded results.
 void require_separate_results(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
     std::map<fs::path, const ImageFile*> makers;
     for (const ImageFile& file : files) {

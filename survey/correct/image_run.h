@@ -4,8 +4,8 @@
 // restarted: finished images are recorded in the folder of results (work_folder.h), and an unusable
 // image does not affect the others.
 //
-// An image is left as it is if its source (size and time) and everything that its result depends on
-// are as recorded, and its files exist in the recorded size.
+// An image is left unchanged if its source (size and time) and everything that its result depends
+// on are as recorded, and its files exist in the recorded size.
 #pragma once
 
 #include "base/work_folder.h"
@@ -36,24 +36,24 @@ struct ImageRunOptions {
 void require_results_apart(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
 // Moves results that shares of the images (base/work_folder.h) left below the folder into it, with
-// their notes: the next run finds them done, and does what no share has. Returns the number of
-// images moved. A RunError if this machine still works on a share. Files that are not ours stay in
-// the shares' folders.
+// their notes: the next run treats them as done, and does the remaining ones. Returns the number of
+// images moved. A RunError if this machine is still working on a share. Other files stay in the
+// shares' folders.
 std::size_t join_shares(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
 // The file's current size and time. An InputError if it vanished since it was listed: one bad
 // image.
 [[nodiscard]] std::string state_of(const std::filesystem::path& image);
 
-// An InputError that these throw concerns one image, which is skipped.
+// An InputError thrown by these concerns one image, which is skipped.
 struct ImageWork {
     // Everything that the image's result depends on, except the image itself.
     std::function<std::string(const ImageFile& file)> inputs;
-    // Before the first image that is not done yet, if there is one.
+    // Called before the first unfinished image, if any.
     std::function<void()> prepare = [] {};
     // Reads the image and writes its results; its counts are recorded. Called from several threads.
     std::function<Counts(const ImageFile& file)> make;
-    std::vector<std::string> strobes{};  // whose names dropouts are reported by
+    std::vector<std::string> strobes{};  // names for reporting dropouts
 };
 
 struct RunOutcome {
@@ -68,10 +68,10 @@ struct RunOutcome {
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const RunOutcome& outcome);
 
-// For one image, recorded with its counts: times that of the reference.
+// Recorded with an image's counts: its exposure relative to the reference.
 inline constexpr const char* kExposure = "relative_exposure";
 
-// And for a dropout: the share of the light, and bits of the strobes that were out.
+// For a dropout also: the share of the light, and bits of the strobes that were out.
 inline constexpr const char* kLightShare = "light_share";
 inline constexpr const char* kStrobesOut = "strobes_out";
 

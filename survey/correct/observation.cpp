@@ -29,7 +29,7 @@ struct ChosenImage {
     LightCells cells{};  // of the first pass
 };
 
-// As it is averaged, and its cells before it is.
+// The image ready for averaging, and the cells of the original.
 struct ReadImage {
     RawImage raw;
     LightCells cells;
@@ -39,7 +39,7 @@ struct ReadImage {
 struct Selection {
     std::vector<ChosenImage> images;
     std::size_t outside = 0;
-    double nearest_m = std::numeric_limits<double>::infinity();  // from the altitude, of those
+    double nearest_m = std::numeric_limits<double>::infinity();  // to the altitude, outside
     std::vector<Skipped> skipped;
 };
 
@@ -74,7 +74,7 @@ struct Pass {
     Selection& selection;
     RawImage like{};  // the first image's size and mosaic, without its samples
 
-    // use(image); share: of all passes, where this one begins and ends.
+    // use(image); from, to: the progress over all passes at this one's beginning and end.
     template <typename Use>
     void run(const Use& use, double from, double to) {
         std::vector<ChosenImage>& images = selection.images;
@@ -102,7 +102,7 @@ struct Pass {
         std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
     }
 
-    // Pixels whose own depth is unknown or not at the altitude.
+    // Omits pixels whose own depth is unknown or not at the altitude.
     void leave_out_relief(const ImageFile& file, RawImage& raw) const {
         const DepthMap map = depth_map_of(survey, file, {raw.width_px, raw.height_px});
         for (std::size_t i = 0; i < raw.samples.size(); ++i) {
@@ -125,7 +125,8 @@ struct Pass {
     }
 };
 
-// Images with less light than the others, by their level, once a pass has read all: their number.
+// Drops images with less light than the others, by their level, after a pass has read all; returns
+// their number.
 std::size_t drop_unlit(const Survey& survey, Selection& selection, Observation& observation) {
     if (survey.dropouts == Dropouts::Ignore) return 0;
     std::vector<LightCells> cells;

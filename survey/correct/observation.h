@@ -31,7 +31,7 @@ inline const std::map<std::string, Average> kAverages{
 
 struct ObservationOptions {
     double altitude_m = 0.0;
-    double within_m = 0.1;  // an image may be off it
+    double within_m = 0.1;  // tolerance of an image's altitude
     Average average = Average::Mean;
     double trim = 0.1;        // the share of samples that a trimmed mean omits at either end
     bool normalise = false;   // divide each image by its own mean first
@@ -47,11 +47,11 @@ struct Observation {
     std::vector<float> planes;
     Average average = Average::Mean;
     std::size_t images = 0;
-    std::size_t outside = 0;  // of the altitude
-    Sled sled;                // the mean; an angle that the navigation does not have is NaN
+    std::size_t outside = 0;  // images at other altitudes
+    Sled sled;                // the mean; an angle missing from the navigation is NaN
     // The root mean square of the standard errors over the mean of the map: the remaining noise.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Skipped> skipped;       // those without light among them
+    std::vector<Skipped> skipped;       // including those without light
     std::vector<MarkedImage> marked{};  // with less light than the others, omitted
     std::vector<Suspicion> looks_wrong;
 };

@@ -4,7 +4,7 @@
 //
 //   p(x, y) = sum over i + j <= order of  c_ij P_i(x) P_j(y)
 //
-// P_i   Legendre's polynomials, for their small condition; what they span is all polynomials
+// P_i   Legendre polynomials, for a small condition number; they span all polynomials
 // x, y  a pixel's centre, -1 to 1 from border to border
 //
 // The fit to many images on one grid is the fit to their mean, so an image adds (order + 1)^2
@@ -28,8 +28,8 @@ class PolynomialSurface {
     void add(std::span<const float> plane);  // width_px x height_px samples, all finite
     [[nodiscard]] std::size_t planes() const { return planes_; }
 
-    // At least one plane has been added: the mean of all samples of all planes, and p at every
-    // pixel, row by row.
+    // Once a plane has been added: the mean of all samples of all planes, and p at every pixel, row
+    // by row.
     [[nodiscard]] double mean() const;
     [[nodiscard]] std::vector<float> fitted() const;
 

@@ -29,19 +29,19 @@
 
 namespace aphotic {
 
-// Corrected images as viewers, annotation platforms and photogrammetry take them: encoded as sRGB,
-// beside the linear ones, in a folder of their own with the same names.
+// Corrected images for viewers, annotation platforms and photogrammetry: encoded as sRGB, in a
+// folder of their own beside the linear ones, with the same names.
 //
 //   shown = sRGB( e M b v ),     e = 2^stops kMiddleGrey / luminance(M b middle)
 //
 // v       corrected image, linear
-// b       what the channels are balanced by, near 1: where the middle is the colour that the rig's
-//         floor has by the lamps, the one it has in the light that reaches the camera over that
-// M       the camera's matrix (camera_to_srgb.h); the identity where the camera is not known
-// middle  what the survey's middle was made (corrector.h); where only a gain is known, e = 2^stops
+// b       balance of the channels, near 1: if the middle is the colour of the rig's floor under the
+//         lamps, the floor's colour in the light that reaches the camera over that
+// M       the camera's matrix (camera_to_srgb.h); the identity if the camera is unknown
+// middle  value of the survey's median (corrector.h); if only a gain is known, e = 2^stops
 // e       one exposure for the whole survey, so that its images can be compared
-// Of what a model did not correct (baseline.h), neither colours nor the middle are known, and
-// b makes the survey's median in each channel kMiddleGrey; M is the identity, e = 2^stops.
+// For baselines (baseline.h), neither colours nor the middle are known: b makes the survey's median
+// in each channel kMiddleGrey, M is the identity, and e = 2^stops.
 //
 // sRGB    transfer curve of IEC 61966-2-1; clipped to 0..1
 //
@@ -51,7 +51,7 @@ inline constexpr double kMiddleGrey = 0.2;
 
 struct SrgbFormat {
     std::string format = "jpeg";  // or png, tiff
-    int bits = 8;                 // or 16, but for jpeg
+    int bits = 8;                 // or 16, except for jpeg
     int quality = 95;             // of jpeg, 1 to 100
     double stops = 0.0;           // brighter by 2^stops
 };
@@ -60,7 +60,7 @@ struct SrgbFormat {
 struct SrgbEncoding {
     std::optional<CameraToSrgb> camera{};  // empty: the identity
     double exposure = 1.0;
-    PerChannel balance{1.0, 1.0, 1.0};  // of the channels, before all else
+    PerChannel balance{1.0, 1.0, 1.0};  // of the channels, applied first
 
     [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
@@ -71,7 +71,7 @@ struct SrgbEncoding {
                                          const std::optional<PerChannel>& middle,
                                          double stops);
 
-// Planes R, G, B of 0 to 1, encoded; of a mono image its own, grey. No mosaic of colours.
+// Planes R, G, B of 0 to 1, encoded; for a mono image its one plane, grey. Not for mosaics.
 [[nodiscard]] std::vector<float> srgb_planes(const RawImage& image, const Eigen::Matrix3d& matrix);
 
 // Their names.
@@ -92,7 +92,7 @@ struct ResultFormat {
     std::string format = "tiff";
     bool mask = false;
     Compression compression = Compression::Fast;
-    std::optional<SrgbFormat> srgb{};  // none: linear alone
+    std::optional<SrgbFormat> srgb{};  // empty: linear only
 
     [[nodiscard]] bool clips() const { return format != "exr"; }
 };
@@ -101,7 +101,7 @@ inline const std::map<std::string, Compression> kCompressions{
     {"none", Compression::None}, {"fast", Compression::Fast}, {"small", Compression::Small}};
 [[nodiscard]] std::string name_of(Compression compression);
 
-// The files that are made of an image, below the folder of results: NAME.tif, NAME.mask.png.
+// The files made from an image, below the folder of results: NAME.tif, NAME.mask.png.
 [[nodiscard]] std::vector<std::filesystem::path> results_of(const ImageFile& file,
                                                             const ResultFormat& format);
 

@@ -38,7 +38,7 @@ BoxFilter box_of(double variance) {
     return box;
 }
 
-// Where the sample `at` of the mirrored line stands in the line itself.
+// The index in the line itself of sample `at` of the mirrored line.
 std::ptrdiff_t mirrored(std::ptrdiff_t at, std::ptrdiff_t length) {
     const std::ptrdiff_t in_period = ((at % (2 * length)) + 2 * length) % (2 * length);
     return in_period < length ? in_period : 2 * length - 1 - in_period;
@@ -198,7 +198,7 @@ Between tiles_about(std::size_t pixel, std::size_t pixels, std::size_t tiles) {
             .share = inside - static_cast<double>(first)};
 }
 
-// Of the tile's samples, by bin: F.
+// F of the tile's samples, by bin.
 Shares shares_in_tile(std::span<const float> plane,
                       std::size_t width,
                       std::size_t tile,

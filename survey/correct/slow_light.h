@@ -12,14 +12,15 @@
 //   local equalisation          see below
 //
 // G  a Gaussian blur      P  a polynomial over the image (polynomial_surface.h)
-// l  log max(I, kBlackShare mean I): what is black has a logarithm, too
-// low, high  the gains of slow and of quick changes: 0 and 1 leave nothing slow, 1 and 1 change
+// l  log max(I, kBlackShare mean I), so that black has a logarithm
+// low, high  the gains of slow and quick changes: 0 and 1 remove everything slow, 1 and 1 change
 //            nothing
 //
-// Limits: the first and the last two take anything broad for light, be it a lamp's pattern or a
-// pale patch of sand, and level the channels separately, so colour is lost with it. The fitted ones
-// know only patterns that their polynomials can follow, and these follow no edge of a cone. A
-// polynomial can fall to 0 or below; the lower limit of the pattern bounds its gain to 1 /
+// Limits: the first and the last two treat any broad variation as light, be it a lamp's pattern or
+// a pale patch of sand, and level the channels separately, so colour is lost as well. The fitted
+// ones are limited to patterns that their polynomials can follow, which excludes the edge of a
+// cone. A polynomial can fall to 0 or below; the lower limit of the pattern bounds its gain to
+// 1 / kLeastShare.
 // kLeastShare.
 //
 // R. Garcia, T. Nicosevici and X. Cufi, "On the way to solve lighting problems in underwater
@@ -33,14 +34,14 @@
 
 namespace aphotic {
 
-// A plane of samples smoothed by a Gaussian of any width, in a time that does not depend on it.
+// A plane of samples smoothed by a Gaussian of any width, in a time independent of that width.
 //
 //   g = e_L * e_L * e_L * e_L * e_L * f      along the rows, then along the columns
 //
 // e_L is a box whose length L need not be whole: its two end samples carry a fraction, chosen so
-// that the five together have the variance sigma^2 exactly. What they make is a bell within 3.5 %
-// of the Gaussian's peak. Beyond its border the image goes on mirrored, so that nothing
-// gets darker there: a constant stays what it is, and the mean is kept.
+// that the five together have exactly the variance sigma^2. The result deviates from the Gaussian
+// by at most 3.5 % of its peak. Beyond its border the image is mirrored, so that nothing darkens
+// there: a constant stays unchanged, and the mean is kept.
 //
 // P. Gwosdek, S. Grewenig, A. Bruhn and J. Weickert, "Theoretical foundations of Gaussian
 // convolution by extended box filtering", SSVM 2011, LNCS 6667.
@@ -78,15 +79,15 @@ struct Homomorphic {
 //
 //   out = least + (most - least) F(I)
 //
-// F            the share of samples below I, of the tile around; between the centres of tiles
-//              their F are interpolated linearly, beyond the outermost they go on
+// F            the share of samples below I in the surrounding tile; interpolated linearly between
+//              the centres of tiles, constant beyond the outermost
 // least, most  of the plane: out stays within them, and f(k I) = k f(I)
-// clip         no bin counts for more than clip times the mean bin, and what is cut off is spread
-//              over all bins: 1 leaves the image as it is, without a bound F is the tile's own
+// clip         no bin counts for more than clip times the mean bin, and the excess is spread over
+//              all bins: 1 leaves the image unchanged, without a limit F is the tile's own
 //
-// Bins are kBins between least and most, and F is linear within a bin. A constant stays as it is.
-// It bends the tones, so that what comes out measures nothing; and a pale patch as large as a tile
-// is levelled away with the light.
+// Bins are kBins between least and most, and F is linear within a bin. A constant stays unchanged.
+// The tone curve is nonlinear, so the result is not a measurement; and a pale patch as large as a
+// tile is removed with the light.
 //
 // K. Zuiderveld, "Contrast limited adaptive histogram equalization", Graphics Gems IV, 1994.
 
