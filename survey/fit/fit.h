@@ -3,13 +3,13 @@
 // The rig that explains a survey: beams, aims, powers, water, vignetting and offsets of the pose,
 // with the errors of each and of the light that they make.
 //
-// The answer is the most probable rig by fit_objective.h, its errors are fit_errors.h's.
+// The result is the most probable rig by fit_objective.h; its errors come from fit_errors.h.
 //
-// A number is determined where its error is under kDetermined of its spread beforehand. Others keep
-// the prior's error, about, and are named, with the altitude at which as many images again would
-// determine them best, as far as that helps at all.
+// A number is determined if its error is under kDetermined of its prior spread. Others keep about
+// the prior's error, and are named, with the altitude at which as many images again would determine
+// them best, if that helps at all.
 //
-// The scale of all light is no part of a rig: powers are those of the rig together.
+// The overall scale of the light is not part of a rig: the sum of the powers stays that of the rig.
 #pragma once
 
 #include "rig/file/rig_text.h"
@@ -29,34 +29,34 @@ namespace aphotic {
 
 inline constexpr double kDetermined = 0.7;
 
-// What as many images again at an altitude would bring.
+// The effect of as many images again at an altitude.
 struct FlyAt {
     double altitude_m = 0.0;
     double error = 0.0;
 };
 
-// A number as the rig's key has it.
+// A number in the units of the rig's key.
 struct FittedNumber {
     std::string key{};
     std::string word{};
     double start = 0.0;
     double value = 0.0;
     double error = 0.0;
-    double spread = 0.0;  // beforehand
+    double spread = 0.0;  // the prior's
     bool is_determined = true;
-    std::optional<FlyAt> fly_at{};  // of one that is not
+    std::optional<FlyAt> fly_at{};  // for an undetermined one
 };
 
-// A coefficient of a beam's table: people look at its curve.
+// A coefficient of a beam's table, better viewed as its curve.
 [[nodiscard]] bool is_curve(const FittedNumber& number);
 
 struct BeamPoint {
     double theta_rad = 0.0;
-    double intensity = 0.0;  // of the beam scaled to a flux of 1
+    double intensity = 0.0;  // for a beam scaled to a flux of 1
     double error = 0.0;
 };
 
-// Two numbers that make up for each other.
+// Two numbers that compensate for each other.
 struct Confounded {
     std::string one;
     std::string other;
@@ -65,12 +65,12 @@ struct Confounded {
 
 struct ImageOutcome {
     std::string name;
-    Sled sled;                // as the navigation or the depth map has it
-    Eigen::Vector3d off;      // as the light tells it, less that
-    double brightness = 0.0;  // of its floor, over the mean of all, as a logarithm
+    Sled sled;                // from the navigation or the depth map
+    Eigen::Vector3d off;      // fitted, less that
+    double brightness = 0.0;  // of its floor relative to the mean of all, logarithm
 };
 
-// An image as blocks: R, G, B planar, NaN where left out.
+// An image as blocks: R, G, B planar, NaN where omitted.
 struct FitView {
     std::size_t image = 0;
     std::vector<float> observed;
@@ -78,11 +78,11 @@ struct FitView {
 };
 inline constexpr std::size_t kFitViews = 3;
 
-// What stays in place from image to image, of neighbouring blocks' differences.
+// The part of neighbouring blocks' differences that is common to all images.
 struct FitPattern {
-    std::vector<float> logarithm;  // by place: a light that is off by this, relative
+    std::vector<float> logarithm;  // by place: relative error of the light
     double rms = 0.0;
-    double by_chance = 0.0;  // rms that texture alone makes of as many images
+    double by_chance = 0.0;  // rms that texture alone gives for as many images
     double whitened = 0.0;   // mean square of the differences over their errors: 1 by chance
     double chance = 0.0;     // standard deviation of that
 };
@@ -91,10 +91,10 @@ struct FitResult {
     FitState state;
     std::vector<FittedNumber> numbers;
     Eigen::MatrixXd covariance;                       // of the numbers, in the keys' units
-    std::vector<std::string> fixed;                   // words of --free: as the rig has them
-    std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
-    std::vector<std::vector<BeamPoint>> beam_curves;  // of fitted ones that are round
-    double unevenness = 0.0;    // expected of a correction by this rig over the flight's poses, rms
+    std::vector<std::string> fixed;                   // words of --free held at the rig's values
+    std::vector<Confounded> confounded;               // |correlation| over 0.9, largest first
+    std::vector<std::vector<BeamPoint>> beam_curves;  // of fitted round beams
+    double unevenness = 0.0;    // expected of a correction with this rig over the flight, rms
     double veil_share = 0.0;    // of the signal, mean
     double texture = 0.0;       // of neighbouring blocks' differences, of green
     double level_spread = 0.0;  // of images
@@ -109,7 +109,7 @@ struct FitResult {
     int rounds = 0;
 };
 
-// An InputError for a rig whose floor a fit does not know: with objects, a scene, or a gloss.
+// An InputError for a rig whose floor a fit does not support: with objects, a scene, or a gloss.
 void require_bare_floor(const Rig& rig);
 
 [[nodiscard]] FitResult fit(const RigText& rig,

@@ -23,9 +23,9 @@ using std::numbers::pi;
 
 constexpr double kOnAxis = 1e-12;
 constexpr double kSteps = 1e-5;  // of central differences, of directions and logarithms
-// A table begins at no less than this share of the brightest, for no logarithm is of nothing.
+// A table starts at this share of the brightest or more, since the logarithm of 0 is undefined.
 constexpr double kDimmest = 0.02;
-constexpr double kScaleHeld = 0.01;  // how well the scale of a beam is held, of 1
+constexpr double kScaleHeld = 0.01;  // the relative error to which the scale of a beam is held
 
 const BeamFrame kLampFrame{
     .axis = Vector3d::UnitZ(), .along = Vector3d::UnitX(), .across = Vector3d::UnitY()};
@@ -34,8 +34,8 @@ Vector3d direction_at(double theta_rad) {
     return {std::sin(theta_rad), 0.0, std::cos(theta_rad)};
 }
 
-// The splines that are not 0 at a place in steps from the axis, by knot from `first` on, and their
-// slopes over the step. Knot -1 is knot 1, mirrored.
+// The splines that are not 0 at a place, given in steps from the axis, by knot from `first` on, and
+// their slopes over the step. Knot -1 is knot 1, mirrored.
 struct Splines {
     std::size_t first = 0;
     std::array<double, 4> value{};
@@ -83,7 +83,7 @@ Beam cosine_beam(double exponent) {
     return beam;
 }
 
-// About the rig's, each by itself; and of cones the sum of what they change.
+// About the rig's, each by itself; for cones also the sum of their changes.
 BeamPrior prior_about(const std::vector<double>& c, bool holds_sum) {
     const auto count = std::ssize(c);
     BeamPrior prior{.rows = MatrixXd::Identity(count, count) / kShapeSpread,
@@ -115,7 +115,7 @@ FitBeam::FitBeam(FitBeamKind kind, const Beam& beam, double widest_rad, double b
     } else if (kind == FitBeamKind::Cosine) {
         c_ = {std::log(std::max(1.0, beam.cones.empty() ? 1.0 : beam.cones.front().exponent))};
         prior_ = prior_about(c_, false);
-        prior_.rows /= 3.0;  // a rig of another kind hardly tells it
+        prior_.rows /= 3.0;  // a rig of another kind hardly constrains it
         prior_.means /= 3.0;
     } else if (kind == FitBeamKind::Optics) {
         const auto* optics = std::get_if<BeamOptics>(&beam.pattern);
@@ -138,7 +138,7 @@ void FitBeam::soften_cones(double block_rad) {
     }
 }
 
-// The table that is closest to the rig's beam by what is known of tables.
+// The table closest to the rig's beam under the prior of tables.
 void FitBeam::begin_table() {
     const auto count = static_cast<Index>(std::max(4.0, std::ceil(widest_rad_ / kKnot_rad) + 2.0));
     widest_rad_ = static_cast<double>(count - 2) * kKnot_rad;
@@ -216,7 +216,7 @@ void FitBeam::table_at(const Vector3d& w, BeamValue& value) const {
     }
     value.intensity = std::exp(log_intensity);
     for (double& by : value.by) by *= value.intensity;
-    // Of the angle over the direction, along the sphere; on the axis nothing even has a slope.
+    // The angle over the direction, along the sphere; on the axis an even function has slope 0.
     const double per_sine = sine < kOnAxis ? 0.0 : 1.0 / sine;
     value.gradient = value.intensity * slope *
                      Vector3d(w.x() * w.z() * per_sine, w.y() * w.z() * per_sine, -sine);
@@ -241,7 +241,7 @@ BeamOptics FitBeam::optics_with(const std::vector<double>& c) const {
     return optics;
 }
 
-// Optics by the rig's own flux: one of each lens would take long, and the powers make up for it.
+// Optics with the rig's own flux: one for each lens would take long, and the powers compensate.
 double FitBeam::intensity_with(const std::vector<double>& c, const Vector3d& w) const {
     if (cones_.empty() && kind_ == FitBeamKind::Held)
         return intensity_towards(beam_, kLampFrame, w);

@@ -8,7 +8,7 @@
 namespace aphotic {
 namespace {
 
-// An image's blocks and what a rig makes of them, as survey_check.h looks at whole images.
+// An image's blocks and their light from a rig, as survey_check.h examines whole images.
 ImageLook look_at(const FitImage& image, const Eigen::VectorXd& logarithm) {
     PerChannel observed{};
     ImageLook look;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Before a fit, by the light of the rig that it begins with: poses of other images, and red and
-// blue that are swapped (survey_check.h). After it, signs that its model is not the images':
+// Before a fit, in the light of the initial rig: poses of other images, and swapped red and blue
+// (survey_check.h). After it, signs that its model does not fit the images:
 //
-//   saturation  more than kMostSaturation of all samples, which the fit leaves out
+//   saturation  more than kMostSaturation of all samples, which the fit omits
 //   pattern     residuals that stay in place from image to image by more than kMostPattern rms, and
 //               kPatternSigmas of chance
-//   range       a number farther from the rig's than kFarthest spreads beforehand
+//   range       a number farther from the rig's than kFarthest prior spreads
 //
-// Floors that are brighter here than there, patches, and poses that are off are no sign of
-// anything: the fit allows for them.
+// Floors of varying brightness, patches, and errors of the poses are not reported: the fit allows
+// for them.
 #pragma once
 
 #include "survey/fit/fit.h"

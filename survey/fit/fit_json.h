@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A fit as JSON: what fit.json holds and `aphotic fit --json` prints.
+// A fit as JSON: the content of fit.json and the output of `aphotic fit --json`.
 #pragma once
 
 #include "survey/fit/fit.h"

@@ -27,10 +27,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kNear_m = 1e-6;  // a lamp is never nearer to a ray
-constexpr double kStep = 1e-6;    // of the central differences of what is computed once an image
+constexpr double kNear_m = 1e-6;  // least distance of a lamp from a ray
+constexpr double kStep = 1e-6;    // of central differences computed once per image
 
-// By altitude, pitch and roll, then by the aim along and across.
+// Order: altitude, pitch and roll, then the aim along and across.
 constexpr int kPose = FitLight::kPose;
 constexpr int kAim = kPose;
 using Jet = ceres::Jet<double, kAim + 2>;
@@ -103,7 +103,7 @@ BasicFloorRay<Jet> ray_to(const FloorJet& floor, const WaterRay& ray) {
             .height_m = height_above(floor, ray.origin_m)};
 }
 
-// A 24th of second differences, each way; along the border they go on as a straight line.
+// A 24th of second differences, each way; extrapolated linearly at the border.
 Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
     const auto across = static_cast<Index>(places.across());
     const auto down = static_cast<Index>(places.down());
@@ -132,7 +132,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& 
     return means;
 }
 
-// Applied to a place's rows as one.
+// Applies it to all rows of a place together.
 void apply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& shares,
            const BlockLight::Rows& from,
            BlockLight::Rows& to) {
@@ -190,7 +190,7 @@ Vector3d aimed_axis(const Rig& rig, const std::array<double, 2>& aim_rad, std::s
 
 namespace {
 
-// What places and nodes of an image have in common, and where their light goes: columns of the
+// What places and nodes of an image have in common, and the columns for their light: of the
 // numbers, of the pose, of the floor's light and of all light.
 class Scene {
   public:
@@ -253,7 +253,7 @@ class Scene {
         beam.intensity = Jet(beam.value.intensity);
         for (Index k = 0; k < 3; ++k) beam.intensity.v += beam.value.gradient(k) * lit.w(k).v;
     }
-    // factor: what of the beam's light is seen. by_version: the same of versions from 1 on.
+    // factor: the visible share of the beam's light. by_version: the same for versions from 1 on.
     void add(const Lit& lit,
              const OfBeam& beam,
              const Jet& factor,
@@ -288,7 +288,7 @@ class Scene {
     std::vector<LampJet> lamps_;
     std::vector<std::array<Index, 2>> aims_;
     std::vector<Index> powers_;
-    std::vector<Index> beams_;  // of the beam's first coefficient: the others follow
+    std::vector<Index> beams_;  // of the beam's first coefficient; the others follow
     std::vector<Index> versions_;
 };
 
@@ -346,7 +346,7 @@ void light_water(const Scene& scene,
     Scene::Lit lit;
     Scene::OfBeam beam;
     std::vector<double> by_version(light.versions() - 1);
-    // Scattered light at an angle at the lamp, phi, of a ray that it is away_m off.
+    // Light scattered at the angle phi at the lamp, which is away_m off the ray.
     const auto scatter = [&](const WaterRay& ray, std::size_t node, std::size_t r, double last) {
         const LampJet& lamp = scene.lamps()[lit.strobe];
         const Vector3d from_lamp = ray.origin_m - lamp.position_m;
@@ -397,7 +397,7 @@ void light_water(const Scene& scene,
             const WaterRay& ray = nodes[node][r];
             const BasicFloorRay<Jet> sight = ray_to(scene.floor(node), ray);
             if (scene.has_planes() && !sight.sees_floor()) continue;
-            // Towards the horizon about as far as the longest path that is tabulated.
+            // Towards the horizon, about as far as the longest tabulated path.
             const double last_m = sight.sees_floor()
                                       ? std::min(sight.height_m.a / sight.down.a, light.longest_m())
                                       : 0.5 * light.longest_m();

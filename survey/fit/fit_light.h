@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of docs/background/physics.md on blocks of an image, and its derivatives over all that
-// a fit looks for, by the kernel's own formulas (light/floor_ray.h):
+// The light of docs/background/physics.md on blocks of an image, and its derivatives over all
+// fitted numbers, by the kernel's own formulas (light/floor_ray.h):
 //
 //   L_c = V sum_s P_s [ B I(w) cos(i)/(pi d^2) T_c(d + r)
 //                       + sum_i int p_i(psi) I(w) V_ic(t + d) / d^2 dt ]
 //
-// P_s    the strobe's power                  V     vignetting: the rig's, cos^n, or 1 + a1 p^2 +
-// ... I      fit_beam.h's, w in the frame        T, V_ic   survey/fit/path_light.h
+// P_s    the strobe's power                      V     vignetting: the rig's, cos^n, or
+//                                                      1 + a1 p^2 + ...
+// I      fit_beam.h's, w in the frame            T, V_ic   survey/fit/path_light.h
 //        of the strobe as it is aimed
-// B      the floor's brightness, 1 of the rig's: the veil is as bright above any floor
+// B      the floor's brightness, 1 for the rig's: the veil does not depend on it
 //
 // Geometry is computed in ceres::Jet, which carries its derivatives over the sled's altitude, pitch
 // and roll and the strobe's aim. Derivatives over the water are the tables' (path_light.h), those
 // over the beam's coefficients the beam's.
 //
 // Lamps are points, the floor is flat and matt. Behind a port each channel has the ray of its mean
-// wavelength. The veil is integrated by kFitVeilPoints of Gauss and Legendre's over the angle at
-// the lamp at the Chebyshev points of light/tile_fit.h, with the image as one tile, and its change
-// with the sled's pose is left out: poses move it by little, and what they move is little.
+// wavelength. The veil is integrated by Gauss-Legendre quadrature with kFitVeilPoints over the
+// angle at the lamp, at the Chebyshev points of light/tile_fit.h with the image as one tile. Its
+// change with the sled's pose is neglected: it is small, and so are the pose offsets.
 //
-// The mean over a block is its middle's, and a 24th of the second differences of middles each way:
-// exact for cubics.
+// The mean over a block is the value at its middle plus a 24th of the second differences of middles
+// each way: exact for cubics.
 //
-// Or blocks have planes of their own (block_planes.h). These do not move with the pose, the veil is
-// integrated before each of them, and the mean over a block is its middle's alone, for differences
-// between neighbours are those of their planes.
+// Alternatively, blocks have planes of their own (block_planes.h). These do not move with the pose,
+// the veil is integrated up to each of them, and the mean over a block is the value at its middle,
+// since neighbouring middles lie on different planes.
 //
-// Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
-// strobe (rig/beam/beam.h). Offsets are added to the altitude, pitch and roll that the navigation
-// tells.
+// An aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
+// strobe (rig/beam/beam.h). Offsets are added to the navigation's altitude, pitch and roll.
 #pragma once
 
 #include "rig/geometry.h"
@@ -49,7 +49,7 @@ namespace aphotic {
 
 inline constexpr unsigned kFitVeilPoints = 8;
 
-// Places of the image, pixels' centres at .5: the middles of blocks, in rows from the top left.
+// Places of the image, with pixel centres at .5: the middles of blocks, in rows from the top left.
 struct FitPlaces {
     int width_px = 0;
     int height_px = 0;
@@ -71,11 +71,11 @@ struct FitImage {
     double saturated_share = 0.0;  // of its samples
 };
 
-// What a fit looks for.
+// The quantities that a fit adjusts.
 struct FitState {
-    std::vector<FitBeam> beams;                  // one of all strobes, or each its own
+    std::vector<FitBeam> beams;                  // one for all strobes, or one for each
     std::vector<std::size_t> beam_of;            // by strobe
-    std::vector<std::array<double, 2>> aim_rad;  // by strobe, off the rig's: along, across
+    std::vector<std::array<double, 2>> aim_rad;  // by strobe, relative to the rig: along, across
     std::vector<double> power;                   // by strobe
     std::vector<WaterNumber> water;
     FloorTint tint{};  // q1, q2 of path_light.h
@@ -96,7 +96,7 @@ struct FitPlaceInState {
 };
 [[nodiscard]] double& number_in(FitState& state, const FitPlaceInState& at);
 
-// The axis of a strobe as the state aims it.
+// The axis of a strobe with the state's aim.
 [[nodiscard]] Eigen::Vector3d aimed_axis(const Rig& rig,
                                          const std::array<double, 2>& aim_rad,
                                          std::size_t strobe);
@@ -104,9 +104,9 @@ struct FitPlaceInState {
 // Rows: by place, then channel.
 struct BlockLight {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::VectorXd logarithm;    // of L; NaN where there is none
-    Eigen::VectorXd floor_share;  // of the light that is no veil
-    Rows slopes;                  // of the logarithm, over the numbers asked for
+    Eigen::VectorXd logarithm;    // of L; NaN where it is missing
+    Eigen::VectorXd floor_share;  // of the light that is not veil
+    Rows slopes;                  // of the logarithm, over the requested numbers
     Rows by_pose;                 // over altitude, pitch and roll
 };
 
@@ -123,17 +123,17 @@ class FitLight {
                                 const std::vector<FitPlaceInState>& numbers,
                                 const std::vector<Plane>& planes = {}) const;
 
-    // The paths that these images can show, with room for offsets of the altitude.
+    // The paths that these images can show, with room for altitude offsets.
     [[nodiscard]] PathRange paths(const std::vector<FitImage>& images) const;
-    // The widest angle off any strobe's axis of the floor that the places see, up to a right angle.
+    // The widest angle off any strobe's axis of the visible floor, up to a right angle.
     [[nodiscard]] double widest_rad(const std::vector<FitImage>& images) const;
-    // What a block at the image's middle spans.
+    // The angle that a block at the image's middle subtends.
     [[nodiscard]] double block_rad() const;
 
     [[nodiscard]] const FitPlaces& places() const { return places_; }
 
     using Rays = std::vector<WaterRay>;  // one, or by channel
-    // What the camera sees of a place.
+    // The camera's view of a place.
     struct Sight {
         double from_middle2 = 0.0;  // p^2 of vignetting
         double cosine = 1.0;        // off the optical axis, in air

@@ -22,26 +22,26 @@ using Eigen::VectorXd;
 
 constexpr Index kPoseNumbers = FitLight::kPose;
 constexpr double kFirstTexture = 0.2;
-constexpr int kRoundsOfTexture = 3;  // that begin
+constexpr int kRoundsOfTexture = 3;  // at the start
 
 // W with W^T W = Sigma^-1.
 MatrixXd whitening(const MatrixXd& scale) {
     return scale.llt().matrixL().solve(MatrixXd::Identity(scale.rows(), scale.cols()));
 }
 
-// Adds what residuals of variance 1, a row of slopes each, tell.
+// Weights of residuals of variance 1, with a row of slopes each.
 struct Weighed {
     double freedom;
     double channels;
     Curvature curvature;
 
-    // w of what is off by d, whitened.
+    // w for the whitened residual d.
     [[nodiscard]] double weight(const VectorXd& d) const {
         if (curvature == Curvature::Expected)
             return (freedom + channels) / (freedom + channels + 2.0);
         return (freedom + channels) / (freedom + d.squaredNorm());
     }
-    // Of -(2 w^2 / (nu + q)) J^T d d^T J, what stands beside J^T d.
+    // For -(2 w^2 / (nu + q)) J^T d d^T J, the factor of J^T d.
     [[nodiscard]] double bend(double w) const {
         return curvature == Curvature::Observed ? w * std::sqrt(2.0 / (freedom + channels)) : 0.0;
     }
@@ -52,7 +52,7 @@ struct Cells {
     Index across;
     Index down;
     Index q;
-    VectorXd residual;  // NaN where there is none
+    VectorXd residual;  // NaN where missing
     BlockLight::Rows slopes;
 
     Cells(const ImageView& view, Index channels, const FitPlaces& places)
@@ -69,8 +69,8 @@ struct Cells {
               VectorXd::Constant(wide * high * channels, std::numeric_limits<double>::quiet_NaN())),
           slopes(BlockLight::Rows::Zero(wide * high * channels, columns)) {}
 
-    // The same of two by two, whose three details `take` gets where all four have a mean. What does
-    // not come in pairs is left out.
+    // The means of 2 x 2 cells; `take` receives the three details where all four have a mean. An
+    // odd last row or column is dropped.
     template <typename Take>
     [[nodiscard]] Cells halved(const Take& take) const {
         Cells half(across / 2, down / 2, q, slopes.cols());
@@ -109,11 +109,11 @@ struct Cells {
     }
 };
 
-// Anderson's acceleration: where steps follow each other slowly along a valley, the point that the
-// last few lead to, taken for linear.
+// Anderson acceleration: where steps progress slowly along a valley, it extrapolates the last few
+// linearly.
 class Anderson {
   public:
-    // The step to take from x in place of dx. errors: of the numbers, by which they compare.
+    // The step to take from x instead of dx. errors: the scales by which numbers compare.
     VectorXd step(const VectorXd& x, const VectorXd& dx, const VectorXd& errors) {
         if (x_.size() > 0) {
             keep(moves_, x - x_);
@@ -143,7 +143,7 @@ class Anderson {
 
     VectorXd x_;
     VectorXd dx_;
-    MatrixXd moves_;    // the last to the right
+    MatrixXd moves_;    // the latest in the last column
     MatrixXd changes_;  // of dx
 };
 
@@ -206,7 +206,7 @@ ImageView FitObjective::view_of(const FitPoint& point,
     view.level_slopes.setZero(q, view.slopes.cols());
     double brightest = -std::numeric_limits<double>::infinity();
     for (const double logarithm : view.light.logarithm)
-        if (logarithm > brightest) brightest = logarithm;  // NaN is not
+        if (logarithm > brightest) brightest = logarithm;  // false for NaN
     const double darkest = brightest + std::log(kDarkestBlock);
     VectorXd slope(numbers);
     for (Index k = 0; k < numbers; ++k)
@@ -422,14 +422,14 @@ FitPoint FitObjective::search(FitPoint point,
             point.pose[i] += answer.col(0) - answer.rightCols(dx.size()) * dx;
         }
         learn_texture(terms, point.texture);
-        constexpr int kFewestRounds = 6;  // steps are short before Anderson's are long
+        constexpr int kFewestRounds = 6;  // steps are short until Anderson acceleration starts
         if (round + 1 >= kFewestRounds && (dx.cwiseAbs().array() < nearness * errors.array()).all())
             break;
     }
     return point;
 }
 
-// No longer than kLongestStep spreads, and no further than a number goes.
+// At most kLongestStep spreads, and within each number's bounds.
 VectorXd FitObjective::within_bounds(const VectorXd& x, VectorXd dx) const {
     double share = 1.0;
     for (std::size_t k = 0; k < problem_.numbers.size(); ++k)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a fit minimises: the negative logarithm of a probability, of the images and of what is known
-// beforehand.
+// The quantity that a fit minimises: the negative log probability of the images and the prior.
 //
 //   ln y_bc = ln L_bc(p; pose) + mu_c + x_bc
 //
@@ -14,28 +13,29 @@
 //     + |R x - r|^2                                                 (fit_problem.h)
 //   rho_nu(d; Sigma) = (nu + q) ln(1 + d^T Sigma^-1 d / nu) + ln det Sigma
 //
-// A floor is a rough field: there are stones and patches of every size. Of such fields Haar's
-// details are nearly independent (right half less left, lower less upper, and across, of cells of
-// 2, 4, 8 blocks and so on), and their variances by level are the field's spectrum, whatever it is:
-// 1/k^2 and pink noise alike. They are multivariate t with two degrees of freedom, of which edges
-// of patches and shades of stones are no surprise. An image's level has four: it carries what the
-// altitude tells of the water, and forgives a black floor or a white one. Sigma and Psi are learned
-// with all else, as maximum likelihood has them: the mean of w d d^T, w = (nu + q)/(nu + d^T
-// Sigma^-1 d). Each has kFirst observations of the scale that it begins with besides, for a few
-// images without texture would have none.
+// A floor is a rough field, with stones and patches of every size. The Haar details of such fields
+// are nearly independent (right half less left, lower less upper, and across, of cells of 2, 4, 8
+// blocks and so on), and their variances by level are the field's spectrum, whatever it is: 1/k^2
+// and pink noise alike. They are multivariate t with two degrees of freedom, which allows for edges
+// of patches and shadows of stones. An image's level has four degrees of freedom: how it varies
+// with altitude constrains the water, and a black or white floor must count as an outlier. Sigma
+// and Psi are learned along with all else by maximum likelihood: the mean of w d d^T,
+// w = (nu + q)/(nu + d^T Sigma^-1 d). Each also has kFirst observations of its initial scale, since
+// a few images without texture would give none.
 //
 // An image's errors of altitude, pitch and roll are numbers of its own, eliminated from its normal
-// equations, and moved with each step. On planes of its own blocks they do nothing, and stay 0.
+// equations, and updated with each step. Where its blocks have planes of their own, they have no
+// effect and stay 0.
 //
-// Details of one image hang together: a stone is seen by several, a shadow by many. What they tell
-// is therefore less than S says, by the dispersion phi of the images' gradients over their
-// curvatures, and S is divided by it where it meets what is known beforehand: 1 on white floors, 3
+// The details of one image are correlated: a stone is seen by several, a shadow by many. They
+// therefore carry less information than S implies, by the dispersion phi of the images' gradients
+// over their curvatures, and S is divided by it before the prior is added: 1 on white floors, 3
 // on patchy ones (fit_errors.h).
 //
-// The search is Gauss and Newton's, with the t's weights (iteratively reweighted least squares).
-// Along the valley of aims that make up for each other the floor's texture bends S as much as the
-// light does, and its steps are short: Anderson's acceleration makes them long. None is longer than
-// kLongestStep spreads of what is known beforehand.
+// The search is Gauss-Newton with the t's weights (iteratively reweighted least squares). Along the
+// valley of aims that compensate for each other, the floor's texture curves S as much as the light
+// does, and steps are short: Anderson acceleration lengthens them. None exceeds kLongestStep prior
+// spreads.
 //
 // K. L. Lange, R. J. A. Little and J. M. G. Taylor, J. Am. Stat. Assoc. 84, 1989, 881 (multivariate
 // t); G. W. Wornell, Proc. IEEE 81, 1993, 1428 (wavelets of 1/f processes); H. F. Walker and P. Ni,
@@ -62,11 +62,11 @@ inline constexpr double kFirst = 1.0;
 inline constexpr double kFirstDispersion = 3.0;
 inline constexpr double kLongestStep = 0.75;
 inline constexpr int kMostRounds = 40;
-// A block counts where its light is at least this share of the image's brightest: below, noise is
-// no share of the signal.
+// A block counts if its light is at least this share of the image's brightest: below it, noise is
+// not proportional to the signal.
 inline constexpr double kDarkestBlock = 0.01;
 
-// Sigma, from cells of 2 x 2 blocks on, and Psi.
+// Sigma, from cells of 2 x 2 blocks up, and Psi.
 struct TextureScales {
     std::vector<Eigen::MatrixXd> details;
     Eigen::MatrixXd level;
@@ -74,12 +74,12 @@ struct TextureScales {
 
 struct FitPoint {
     Eigen::VectorXd x;                  // the problem's numbers, then mu
-    std::vector<Eigen::Vector3d> pose;  // by image, off the navigation's
+    std::vector<Eigen::Vector3d> pose;  // by image, relative to the navigation
     TextureScales texture;
     double dispersion = kFirstDispersion;
 };
 
-// Of an image at a point: its blocks' logarithms less the model's, and the model's slopes.
+// An image at a point: its blocks' logarithms less the model's, and the model's slopes.
 struct ImageView {
     BlockLight light;
     Eigen::VectorXd residual{};  // by place, then channel; NaN where a block does not count
@@ -89,15 +89,15 @@ struct ImageView {
     std::size_t blocks = 0;
 };
 
-// Which second derivative of S: that of its majorant, by which the search goes; its own; or what is
-// to be expected of images that are not there yet.
+// Which second derivative of S: that of its majorant, used by the search; its own; or that expected
+// of future images.
 enum class Curvature { Majorant, Observed, Expected };
 
-// What an image adds to half of S's gradient (negative) and curvature, its pose eliminated.
+// An image's contribution to half of S's negative gradient and curvature, its pose eliminated.
 struct ImageTerms {
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
-    Eigen::MatrixXd pose_answer;  // of the pose's step: to 1, then to -dx
+    Eigen::MatrixXd pose_answer;  // the pose's step: constant, then by -dx
     TextureScales moments;        // sums of w d d^T
     std::vector<double> weights;  // sums of w: of details by level, then of the level
 };
@@ -110,24 +110,24 @@ class FitObjective {
                  const FitLight& light,
                  const FitProblem& problem);
 
-    // Where the rig is, with the level and the texture that fit best there.
+    // The rig itself, with the level and the texture that fit it best.
     [[nodiscard]] FitPoint first_point() const;
-    // The point of least S from there, to a share of the numbers' errors.
+    // The point of least S, starting there; nearness: to a share of the numbers' errors.
     [[nodiscard]] FitPoint search(FitPoint point,
                                   double nearness,
                                   const std::function<void(int round)>& progress) const;
 
-    // The images of which enough is lit and seen, at a point.
+    // The images with enough lit and observed blocks, at a point.
     [[nodiscard]] std::vector<std::size_t> counted(const FitPoint& point) const;
     // By image, at a point.
     [[nodiscard]] std::vector<ImageTerms> terms_at(const FitPoint& point,
                                                    Curvature curvature) const;
-    // What one more image would add.
+    // The contribution of one more image.
     [[nodiscard]] Eigen::MatrixXd information_at(const FitPoint& point, const Sled& sled) const;
-    // R^T R and the images', over x.
+    // The sum of R^T R and the images' curvature, over x.
     [[nodiscard]] Eigen::MatrixXd curvature_of(const std::vector<ImageTerms>& terms) const;
 
-    // Of half of S, negative.
+    // The negative gradient of half of S.
     [[nodiscard]] Eigen::VectorXd gradient_of(const FitPoint& point,
                                               const std::vector<ImageTerms>& terms) const;
 
@@ -165,7 +165,7 @@ class FitObjective {
     int threads_;
     std::size_t channels_;
     std::size_t levels_;           // of details
-    Eigen::Vector3d pose_weight_;  // 1/variance; infinite: they are exact
+    Eigen::Vector3d pose_weight_;  // 1/variance; infinite: exact poses
 };
 
 }  // namespace aphotic

@@ -21,13 +21,13 @@
 namespace aphotic {
 namespace {
 
-constexpr double kShownPattern = 0.05;  // at which a pattern has its full colour
+constexpr double kShownPattern = 0.05;  // for full colour
 
 std::string percent(double share) {
     return fmt::format("{:.2g}\xC2\xA0%", 100.0 * share);
 }
 
-// To as many digits as its error earns: two of the error's.
+// Rounded to two significant digits of its error.
 std::string with_error(double value, double error) {
     const int digits =
         error > 0.0 ? std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))) : 4;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A fit as one page to look at: what was found with its errors, observed and fitted light with
-// what is left, the beam with its band of error, residuals over altitude, what was held.
+// A fit as one page to view: the results with their errors, observed and fitted light with the
+// residuals, the beam with its error band, residuals over altitude, the numbers held.
 #pragma once
 
 #include "survey/fit/fit.h"

@@ -32,7 +32,7 @@ VectorXd field_of(const Pairs& pairs,
                   const VectorXd& weights,
                   std::size_t places) {
     const auto size = static_cast<Index>(places);
-    constexpr double kTie = 1e-6;  // which of all fields that differ by a constant
+    constexpr double kTie = 1e-6;  // selects one of all fields that differ by a constant
     std::vector<Eigen::Triplet<double>> entries;
     VectorXd wanted = VectorXd::Zero(size);
     for (Index k = 0; k < size; ++k) entries.emplace_back(k, k, kTie);
@@ -94,14 +94,14 @@ FitPattern pattern_of(const FitObjective& objective,
         }
     }
     pattern.whitened /= std::max(counted, 1.0);
-    // Channels of a pair are nearly one.
+    // The channels of a pair are almost fully correlated.
     pattern.chance = std::sqrt(2.0 * static_cast<double>(q) / std::max(counted, 1.0));
     const VectorXd safe = weights.cwiseMax(1e-9);
     const VectorXd field =
         field_of(pairs, sums.col(shown).cwiseQuotient(safe), weights, places.size());
     pattern.rms = std::sqrt(field.squaredNorm() / static_cast<double>(field.size()));
     pattern.logarithm.assign(field.begin(), field.end());
-    // Half of what halves of the images differ by, were their differences of either sign alike.
+    // Half of the difference between halves of the images, with random signs of the pairs.
     VectorXd turned = sums.col(shown);
     for (Index p = 0; p < count; ++p)
         turned(p) = std::sqrt(squares(p, shown)) * (p * 2654435761U % 1024 < 512 ? 1.0 : -1.0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a fit leaves in place from image to image: where that is more than texture makes by chance,
-// the light is none that the fit allows.
+// The residual of a fit that stays in place from image to image: if it exceeds what texture gives
+// by chance, the fit's model cannot represent the light.
 //
-// A pair of neighbouring blocks is off by d_i in image i, whose t has the weight w_i there. Over
-// images
+// A pair of neighbouring blocks has the residual difference d_i in image i, where its t has the
+// weight w_i. Over images
 //
 //   D = sum w d / sum w       z^2 = (sum w d)^2 / sum (w d)^2        mean 1 by chance
 //

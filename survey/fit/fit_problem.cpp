@@ -20,9 +20,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kTurn = 0.8;  // the most that an aim is off [rad]
+constexpr double kTurn = 0.8;  // the largest error of an aim [rad]
 
-// What is asked for by one word, and what is known of it beforehand.
+// The numbers requested by one word, and their prior.
 struct Word {
     std::string_view name;
     double spread;  // in the key's unit, or of the logarithm
@@ -40,7 +40,7 @@ constexpr std::array<Word, 9> kWords{{{"beam", kShapeSpread, true},
 constexpr double kRadialSpread = 0.3;
 constexpr double kLossSpread_per_m = 0.05;
 constexpr double kMostCosine = 50.0;
-constexpr double kUsualCosine = 3.0;  // of a lens that the rig says nothing of
+constexpr double kUsualCosine = 3.0;  // for a lens that the rig does not describe
 
 const Word& word_named(std::string_view name) {
     return *std::ranges::find(kWords, name, &Word::name);
@@ -72,10 +72,10 @@ class Problem {
     }
 
   private:
-    // Asked for by its word or its key, and not held.
+    // Requested by its word or its key, and not held.
     [[nodiscard]] bool is_free(std::string_view word, const std::string& key) const {
         if (has(options_.hold, word) || has(options_.hold, key)) return false;
-        // The floor's colour is free unless it is held: nobody knows it.
+        // The floor's colour is free unless it is held, since it is never known.
         if (word == "tint" || !options_.free) return word_named(word).is_by_default;
         return has(*options_.free, word) || has(*options_.free, key);
     }
@@ -92,7 +92,7 @@ class Problem {
         };
         told(word);
         told(number.key);
-        constexpr double kFarthest = 20.0;  // spreads, where nothing else bounds it
+        constexpr double kFarthest = 20.0;  // spreads, if nothing else bounds it
         if (number.least == number.most) {
             number.least = -kFarthest * number.spread;
             number.most = kFarthest * number.spread;
@@ -101,7 +101,7 @@ class Problem {
         numbers_.push_back(number);
     }
 
-    // Strobes of like beams share one, unless each is to have its own.
+    // Strobes with equal beams share one, unless each is to have its own.
     void add_beams(double widest_rad, double block_rad) {
         std::vector<std::string> signatures;
         for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
@@ -161,7 +161,7 @@ class Problem {
             const double value = text_.number(key).value_or(absent);
             state_.water.push_back({.key = key, .value = value});
             FitNumber number{.at = {FitPart::Water, state_.water.size() - 1}, .key = key};
-            // What is 0 may be more, by no factor.
+            // A number at 0 can grow, but not by a factor.
             number.is_log = value > 0.0;
             number.spread = number.is_log ? word_named("water").spread : kLossSpread_per_m;
             number.least = number.is_log ? std::log(least / value) : 0.0;
@@ -171,7 +171,7 @@ class Problem {
             if (numbers_.size() == had) state_.water.pop_back();
         };
         if (const auto chlorophyll = text_.number("water.chlorophyll_mg_m3")) {
-            // What the reader allows, and room for differences.
+            // The reader's limits, with room for differences.
             one("chlorophyll_mg_m3", 1.0, 0.0202, 29.8);
             one("cdom_440_per_m", case_1_cdom_440_per_m(*chlorophyll), 1e-6, 1e2);
             one("particles", 1.0, 1e-3, 1e2);
@@ -224,7 +224,7 @@ class Problem {
             if (!is_radial) {
                 number.key = "camera.vignetting.cosine";
                 number.spread = word_named("vignetting").spread;
-                number.least = -state_.vignetting.front();  // a rig's is 0 to kMostCosine
+                number.least = -state_.vignetting.front();  // rigs allow 0 to kMostCosine
                 number.most = kMostCosine - state_.vignetting.front();
             }
             add("vignetting", number);
@@ -263,7 +263,7 @@ class Problem {
         for (const auto& [asked, spread] : options_.priors) require("--prior", asked);
     }
 
-    // What is said of numbers is said of fitted ones.
+    // Options about numbers require that these are fitted.
     void require_fitted() const {
         const auto is_fitted = [&](std::string_view word) {
             return std::ranges::any_of(numbers_, [&](const FitNumber& number) {
@@ -327,7 +327,7 @@ class Problem {
         return problem;
     }
 
-    // By how much an aim may be off before a beam's table ends within the image.
+    // The error of an aim that keeps the image within a beam's table.
     static constexpr double kAimRoom_rad = 0.15;
     static constexpr double kFarthestCoefficient = 12.0;
     static constexpr double kDarkest = 0.02;  // times the rig's floor; the brightest reflects all

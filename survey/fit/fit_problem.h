@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a fit looks for: which numbers of a rig are free, and what is known of each beforehand.
+// Which numbers of a rig a fit adjusts, and the prior of each.
 //
-// A number is searched for as x, 0 where the rig has it:
+// A number is searched as x, which is 0 at the rig's value:
 //
-//   value = start e^x    of what cannot be negative: powers, water, brightness
-//   value = start + x    of all others
+//   value = start e^x    for what cannot be negative: powers, water, brightness
+//   value = start + x    for all others
 //
-// Beforehand x is Gaussian, 0 +- `spread`; a beam's coefficients are as fit_beam.h says. These
-// priors are weak: they move no number that the images tell, and leave those that the images do not
-// tell where the rig has them, with the prior's error.
+// The prior of x is Gaussian, 0 +- `spread`; that of a beam's coefficients is in fit_beam.h. These
+// priors are weak: they do not move numbers that the images determine, and leave the others at the
+// rig's values, with the prior's error.
 #pragma once
 
 #include "rig/file/rig_text.h"
@@ -26,17 +26,16 @@ namespace aphotic {
 
 struct FitOptions {
     FitBeamKind beam = FitBeamKind::Table;
-    bool has_beam_each = false;  // each strobe its own
-    // The lens as 1 + a1 p^2 + a2 p^4 + a3 p^6, or as cos^n; none: as the rig has it, cos^n where
-    // it has none.
+    bool has_beam_each = false;  // one for each strobe
+    // The lens as 1 + a1 p^2 + a2 p^4 + a3 p^6, or as cos^n; empty: the rig's form, cos^n if it has
+    // none.
     std::optional<bool> has_radial_vignetting{};
-    // Words, or keys of numbers; none: the first six words that FitWords has. What is held is not
-    // fitted, whatever is free.
+    // Words, or keys of numbers; empty: the words that are free by default. `hold` overrides it.
     std::optional<std::vector<std::string>> free{};
     std::vector<std::string> hold{};
-    // Spreads by word or key, in the key's unit; relative for what is searched for as e^x.
+    // Spreads by word or key, in the key's unit; relative for numbers searched as e^x.
     std::map<std::string, double> priors{};
-    // Standard deviations of what the navigation tells, image by image.
+    // Standard deviations of the navigation, per image.
     double altitude_error_m = 0.02;
     double attitude_error_rad = 0.0087;
     int threads = 1;
@@ -45,11 +44,11 @@ struct FitOptions {
 struct FitNumber {
     FitPlaceInState at{};
     std::string key{};   // strobe.fore.power
-    std::string word{};  // what it is asked for by: power
+    std::string word{};  // power: names it in options
     double spread = 1.0;
     bool is_log = false;
-    bool is_shown_exp = false;  // a beam's logarithm, which people know by its exponential
-    double per_unit = 1.0;      // the key's unit, of the state's
+    bool is_shown_exp = false;  // a beam's logarithm, reported as its exponential
+    double per_unit = 1.0;      // the state's unit, in the key's
     double least = 0.0;         // of x
     double most = 0.0;
     double start = 0.0;  // in the state
@@ -64,7 +63,7 @@ struct FitNumber {
 struct FitProblem {
     FitState start;
     std::vector<FitNumber> numbers;
-    // Of R x - r, each of variance 1.
+    // R and r: each row of R x - r has variance 1.
     Eigen::MatrixXd prior_rows;
     Eigen::VectorXd prior_means;
 
@@ -72,8 +71,8 @@ struct FitProblem {
     [[nodiscard]] std::vector<FitPlaceInState> places() const;
 };
 
-// An InputError for a word or a key that is none, for what is said of numbers that are not fitted,
-// and where none is.
+// An InputError for an unknown word or key, for options about numbers that are not fitted, and if
+// there is nothing to fit.
 void require_fit_options(const RigText& text, const FitOptions& options);
 [[nodiscard]] FitProblem fit_problem(const RigText& text,
                                      const FitOptions& options,

@@ -38,13 +38,13 @@ struct Mean {
     }
 };
 
-// Of places in rows from the top left.
+// For places in rows from the top left.
 std::size_t blocks_along(int size_px, int block_px) {
     return static_cast<std::size_t>(std::max(1, size_px / block_px));
 }
 
-// Colours at every pixel: the sites of a mosaic's colours are half a pixel beside the middle of a
-// block, to either side, and the mean of a slope would be off by as much.
+// Colours at every pixel: the sites of a mosaic's colours are half a pixel off the middle of a
+// block, to either side, which would bias the mean of a slope.
 RawImage of_all_colours(const RawImage& raw) {
     if (!is_bayer(raw.mosaic)) return raw;
     return {.width_px = raw.width_px,
@@ -95,7 +95,7 @@ void average(const RawImage& raw, float white, int block_px, FitImage& image) {
     image.saturated_share = saturated / static_cast<double>(raw.samples.size());
 }
 
-// Its floor, and what stands for the pose where that is not known.
+// The image's floor, and a substitute for its pose if that is unknown.
 void put_floor(const Survey& survey,
                const ImageFile& file,
                const FitPlaces& places,
@@ -129,7 +129,7 @@ double number_of(const ExrReader& reader, const std::string& name, const std::st
     return *value;
 }
 
-// A mosaic's map has its red at a quarter of the pixels alone.
+// A mosaic's map has red at only a quarter of the pixels.
 void require_every_channel(const FitImage& image, const std::string& map) {
     for (std::size_t c = 0; c < kChannels; ++c) {
         bool is_told = false;
@@ -166,7 +166,7 @@ FitImage image_of_map(ExrReader& reader,
     average(raw, std::numeric_limits<float>::infinity(), block_px, image);
     require_every_channel(image, map);
     const bool is_mono = camera.sensor.is_mono();
-    // Of a mono camera all three are one, and count once.
+    // For a mono camera all three are equal, and count once.
     for (std::size_t k = 0; k < image.signal.size() && is_mono; ++k)
         if (k % kChannels > 0) image.signal[k] = std::numeric_limits<float>::quiet_NaN();
     return image;
@@ -183,7 +183,7 @@ FitPlaces places_of(int width_px, int height_px, int block_px) {
     return places;
 }
 
-// Leaves out what not all strobes lit. files: by image, of the survey's.
+// Omits images that not all strobes lit. files: by image, the survey's.
 void leave_lit(const Survey& survey,
                const std::vector<LightCells>& cells,
                const std::vector<std::size_t>& files,
@@ -215,7 +215,7 @@ void leave_lit(const Survey& survey,
 }  // namespace
 
 FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
-    // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
+    // Even, so that every block of a mosaic holds the same number of sites of each kind.
     int block_px = std::max(1, width_px / std::max(1, blocks_across));
     if (block_px > 1) block_px -= block_px % 2;
     return places_of(width_px, height_px, block_px);

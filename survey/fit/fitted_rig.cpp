@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// To as many digits as any fit tells, and not 120.00000000000001.
+// To more digits than any fit determines, and not 120.00000000000001.
 double rounded(double value) {
     constexpr int kDigits = 12;
     return rounded_to_digits(value, kDigits);
 }
 
-// A beam of its own, for the rig's may be another strobe's too.
+// A beam of its own, since other strobes may use the rig's.
 void add_beam(const FitBeam& fit,
               const FitBeam::Fitted& fitted,
               const std::string& name,
@@ -58,7 +58,7 @@ void add_beam(const FitBeam& fit,
     }
 }
 
-// Beams of the rig that no strobe has now.
+// Beams of the rig that no strobe uses any more.
 void erase_orphans(const Rig& rig, RigText& text) {
     for (const Strobe& strobe : rig.strobes) {
         const std::string& name = strobe.beam.name;
@@ -69,7 +69,7 @@ void erase_orphans(const Rig& rig, RigText& text) {
     }
 }
 
-// The powers of a rig have a common scale that no image tells: together they stay as they were.
+// Images do not determine the common scale of the powers: their sum is unchanged.
 void set_strobes(const RigText& rig_text,
                  const Rig& rig,
                  const FitState& state,
@@ -97,7 +97,7 @@ void set_strobes(const RigText& rig_text,
         }
         const double power = state.power[s] * beams[b].flux * was / all;
         if (strobe.power > 0.0 && power != strobe.power) {
-            // In the unit that the rig has it in.
+            // In the rig's own unit.
             std::string unit = ".power";
             for (const char* told : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
                 if (text.has(key + told)) unit = told;
@@ -154,7 +154,7 @@ void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs
                                      rounded(turn.z() * kDegreesPerRadian)});
     }
     const std::string toml = text.text();
-    // What is written can be read.
+    // Ensures that the result can be read.
     static_cast<void>(RigText(toml, kFittedRig, folder));
     write_text_file(folder / kFittedRig,
                     "# By `aphotic fit`; its errors are in fit.json.\n" + toml);

@@ -48,7 +48,7 @@ PathLight::PathLight(const RigText& text,
         path_steps(spectral_sum(rig_.water, grid_of(rig_.camera), of_lamp), paths, kFitTableError);
     add_version({&rig_}, {1.0}, tint, 0);
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-        // A number at 0 may have nothing below it.
+        // A number at 0 may have no lower value.
         const double step = kWaterStep * std::max(std::abs(numbers[k].value), 0.01);
         const double down = numbers[k].value > step ? step : 0.0;
         std::vector<WaterNumber> moved = numbers;
@@ -87,7 +87,7 @@ void PathLight::add_version(const std::vector<const Rig*>& rigs,
                    std::exp(u * (tint[0] + u * tint[1])) * std::pow(u, power_of_u);
         }));
         for (std::size_t i = 0; i < scatterers_; ++i) {
-            // The water does not know the floor's colour.
+            // The veil does not depend on the floor's colour.
             veil_.push_back(tabulated([&](const Rig& rig, double nm) {
                 return power_of_u > 0 ? 0.0 : lamp.at(nm) * rig.water.scattering_per_m(i, nm);
             }));

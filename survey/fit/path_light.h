@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What of a lamp's light arrives over a path in water, and how that changes with the water:
+// The lamp light that arrives over a path in water, and its dependence on the water:
 //
 //   T_c(l)  = int Phi rho e^(q1 u + q2 u^2) Q_c exp(-K l) dlambda    by way of the floor
 //   V_ic(l) = int Phi b_i Q_c exp(-K l) dlambda                      by way of scatterer i
 //
-// rho    the rig's floor       q1, q2   by how much redder the floor of the images is
+// rho    the rig's floor       q1, q2   relative redness of the images' floor
 // u      wavelength, from -1 at the short end of the camera's range to 1 at the long end
 //
-// A floor of another colour changes how fast a channel loses light with the path, not its level
-// alone: what is redder has its red at longer waves, of which water takes more.
+// A floor of another colour changes how fast a channel loses light with the path, not only its
+// level: a redder floor has its red at longer wavelengths, which water absorbs more.
 //
-// Versions are the light itself, then its derivatives over the numbers of the rig's [water] that a
-// fit looks for, then over q1 and q2. All are tables of light/path_table.h, of bands of a
-// nanometre. Derivatives over the water are central differences of the whole rig read with the
-// number kWaterStep more and less, so that any number of [water] will do; they err by kWaterStep^2.
+// Versions are the light itself, then its derivatives over the fitted numbers of the rig's [water],
+// then over q1 and q2. All are tables of light/path_table.h, with bands of a nanometre. Derivatives
+// over the water are central differences of the whole rig, read with the number larger and smaller
+// by kWaterStep, so any number of [water] is supported; their error is of order kWaterStep^2.
 #pragma once
 
 #include "light/path_table.h"
@@ -31,7 +31,7 @@ namespace aphotic {
 inline constexpr double kWaterStep = 1e-3;  // relative
 inline constexpr double kFitTableError = 1e-6;
 
-// A number of [water] that the fit looks for, with its value there.
+// A fitted number of [water], with its value there.
 struct WaterNumber {
     std::string key;  // water.multiple
     double value = 0.0;
@@ -41,7 +41,7 @@ using FloorTint = std::array<double, 2>;  // q1, q2
 
 class PathLight {
   public:
-    // Of every strobe of the rig, with these numbers in its [water].
+    // For every strobe of the rig, with these numbers in its [water].
     PathLight(const RigText& rig,
               const std::vector<WaterNumber>& numbers,
               const FloorTint& tint,
