@@ -32,7 +32,7 @@ IfdoJson plain_scalar(const std::string& text) {
     if (is_in(kFalse)) return false;
     std::string_view digits = text;
     if (digits.starts_with('+')) digits.remove_prefix(1);
-    // Such as 007, which some readers take as octal, some as a number, some as a name.
+    // Such as 007, which readers may take as octal, as a number, or as a name.
     const std::size_t first = digits.starts_with('-') ? 1 : 0;
     const bool is_padded = digits.size() > first + 1 && digits[first] == '0' &&
                            digits[first + 1] >= '0' && digits[first + 1] <= '9';
@@ -84,7 +84,7 @@ class Converter {
     std::size_t left_;
 };
 
-// Which JSON is sure to be.
+// JSON must be UTF-8.
 void require_utf8(const std::string& name, std::string_view text) {
     try {
         (void)IfdoJson(text).dump();
@@ -93,7 +93,7 @@ void require_utf8(const std::string& name, std::string_view text) {
     }
 }
 
-// Before any is built.
+// Checked before any are built.
 void require_few_values(const std::string& name, std::string_view text) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -109,8 +109,7 @@ void require_few_values(const std::string& name, std::string_view text) {
 }
 
 IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
-    // Without aliases a value takes at least two characters. Few of them are much longer than their
-    // value.
+    // Without aliases a value takes at least two characters; these limits leave room for aliases.
     constexpr std::size_t kMostValuesOfLetter = 4;
     constexpr std::size_t kAnyway = 1000;
     require_few_values(name, text);

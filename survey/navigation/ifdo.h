@@ -38,11 +38,11 @@ struct Ifdo {
 
     [[nodiscard]] const IfdoJson& header() const { return set.at("image-set-header"); }
     [[nodiscard]] const IfdoJson& items() const { return set.at("image-set-items"); }
-    // From an image's object, else from the header; null if neither has it.
+    // From the image's object, otherwise from the header; null if neither has it.
     [[nodiscard]] const IfdoJson& field(const IfdoJson& image, const std::string& key) const;
 };
 
-// Whether a text claims to be one.
+// Whether a text claims to be an iFDO.
 [[nodiscard]] bool is_ifdo(std::string_view text);
 
 // name is for messages. An InputError if it is not an iFDO, is nested deeper than kMostJsonDepth,
@@ -50,11 +50,11 @@ struct Ifdo {
 // size allows when aliases are expanded.
 [[nodiscard]] Ifdo parse_ifdo(const std::string& name, std::string_view text);
 
-// The object of a still image, given its item: the item itself or the only one of its list; null if
-// there is none.
+// The object of a still image, given its item: the item itself or the only object of its list;
+// otherwise null.
 [[nodiscard]] const IfdoJson* still_image(const IfdoJson& item);
 
-// As it came, JSON or YAML.
+// In its original format, JSON or YAML.
 [[nodiscard]] std::string ifdo_text(const Ifdo& ifdo);
 
 }  // namespace aphotic

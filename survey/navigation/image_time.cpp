@@ -98,7 +98,7 @@ std::optional<double> time_in_habcam_name(const std::string& name) {
 
 std::optional<double> time_in_exif(const std::map<std::string, std::string>& tags) {
     std::string text = tag(tags, "Exif:DateTimeOriginal");
-    if (text.find(':') == std::string::npos) return std::nullopt;  // seconds are no time of EXIF's
+    if (text.find(':') == std::string::npos) return std::nullopt;  // EXIF has no times in seconds
     const std::string part = tag(tags, "Exif:SubsecTimeOriginal");
     if (!part.empty()) text += "." + part;
     const auto time_s = unix_time_s(text);

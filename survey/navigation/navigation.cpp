@@ -90,7 +90,7 @@ std::string words_of(const NavigationNotes& notes) {
 
 namespace {
 
-// What a rig file allows, too.
+// A rig file has the same limits.
 struct Bounds {
     double least;
     double most;
@@ -98,7 +98,7 @@ struct Bounds {
 constexpr Bounds kAltitude_m{0.001, 10000.0};
 constexpr Bounds kTilt_deg{-89.9, 89.9};
 
-// The file's name without its folder, of either kind of slash, and without an image's extension.
+// The file's name without its folder (with either kind of slash) and without an image extension.
 std::string name_in(std::string_view image) {
     const std::size_t slash = image.find_last_of("/\\");
     if (slash != std::string_view::npos) image.remove_prefix(slash + 1);
@@ -197,7 +197,7 @@ bool Navigation::tells_depth() const {
 
 void Navigation::mount(const Mounting& mounting) {
     for (auto& [key, pose] : poses_) {
-        // For the vehicle: an impossible pose is reported in its own numbers.
+        // Checked for the vehicle: an impossible pose is reported in its own numbers.
         if (!pose.fault.empty() || !fault_of(pose.sled).empty()) continue;
         try {
             pose.place = camera_place(pose.place, pose.sled, mounting);
@@ -220,7 +220,7 @@ std::optional<Sled> highest_pose(const Navigation& navigation,
         try {
             const Sled& sled = navigation.pose_of(file.source).sled;
             if (!highest || sled.altitude_m > highest->altitude_m) highest = sled;
-        } catch (const InputError&) {  // it is skipped, with the reason, when its turn comes
+        } catch (const InputError&) {  // reported when its turn comes
         }
     }
     return highest;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sled's pose when each image was taken. It is built from poses, by the reader of navigation
-// (navigation_file.h) or by any program that knows them.
+// The sled's pose at the time of each image. It is built from poses by the reader of navigation
+// (navigation_file.h), or by any other program.
 //
-//   altitude  along the camera's axis      pitch  positive bow up      roll  positive starboard
-//   down
+//   altitude  along the camera's axis
+//   pitch     positive bow up
+//   roll      positive starboard down
 //
-// An image is identified by its file name without folder and image extension, so that a pose still
-// holds after raw images were converted; or, if poses are in the files themselves, by its path. An
-// image that occurs twice has no pose.
+// An image is identified by its file name without folder and image extension, so that a pose
+// remains valid after raw images are converted; or by its path, if poses are in the files
+// themselves. An image that occurs twice has no pose.
 #pragma once
 
 #include "rig/rig.h"
@@ -28,24 +29,24 @@
 
 namespace aphotic {
 
-// How a survey's navigation was interpreted: the format, the columns used, their units, and how its
-// poses became the camera's.
+// How a survey's navigation was interpreted: the format, the columns used, their units, and the
+// conversion of its poses to the camera's.
 
 enum class AngleUnit { Degrees, Radians };
 
-// How images are found in a track, by their times.
+// How images are located in a track by their times.
 struct TimesOfImages {
-    std::string mask{};  // of their names; empty: EXIF, or HabCam's names
+    std::string mask{};  // of image names; empty: EXIF, or HabCam's names
     double clock_offset_s = 0.0;
     double longest_gap_s = 0.0;
-    std::size_t lines_left_out = 0;  // of the track: no time, or no pose that a sled can have
+    std::size_t lines_left_out = 0;  // of the track: no time, or an impossible pose
 };
 
 struct NavigationNotes {
     std::string format{};
     std::vector<std::pair<std::string, std::string>> columns{};  // our name, the file's
     AngleUnit angles_in = AngleUnit::Degrees;
-    std::optional<TimesOfImages> times{};  // empty: images have their names in the file
+    std::optional<TimesOfImages> times{};  // empty: the file names the images
     Mounting mounting{};
 };
 
@@ -56,22 +57,22 @@ struct NavigationNotes {
 [[nodiscard]] std::string words_of(const NavigationNotes& notes);
 
 struct ImagePose {
-    std::string image{};  // as the source has it
+    std::string image{};  // as in the source
     Sled sled{};
-    std::size_t line = 0;  // of the file; 0: of none
-    std::string fault{};   // why the source tells no pose; or empty
-    Place place{};         // where the source tells it, and is asked to
+    std::size_t line = 0;  // of the file; 0: none
+    std::string fault{};   // why the source gives no pose; or empty
+    Place place{};         // if requested, and given by the source
 };
 
-// Whether the source has the angles, for the whole survey; otherwise poses have others, such as the
-// rig's.
+// Whether the source gives the angles, for the whole survey; otherwise they come from elsewhere,
+// such as the rig.
 struct GivenAngles {
     bool pitch = true;
     bool roll = true;
 };
 
-// Why no sled has this pose, such as the zeros and NaN of an altimeter that lost the floor; or
-// empty.
+// Why a pose is impossible for a sled, such as the zeros and NaN of an altimeter that lost the
+// floor; or empty.
 [[nodiscard]] std::string fault_of(const Sled& sled);
 
 enum class ImagesKnownBy { Name, Path };
@@ -84,28 +85,28 @@ class Navigation {
                GivenAngles given = {},
                ImagesKnownBy known_by = ImagesKnownBy::Name);
 
-    // The pose of an image file. An InputError if there is none, it has a fault, or its numbers are
-    // impossible for a sled: that concerns one image, and the others can be used without it.
+    // The pose of an image file. An InputError if it is missing, has a fault, or is impossible for
+    // a sled; this concerns one image only.
     [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
 
-    // The name that stands in messages.
+    // The name used in messages.
     [[nodiscard]] const std::string& source() const { return source_; }
 
-    // From now on poses, which were the vehicle's, are the camera's.
+    // Converts all poses from the vehicle's to the camera's.
     void mount(const Mounting& mounting);
 
-    // Images outside this range no longer have a pose.
+    // Images outside this range lose their pose.
     void limit_altitude(double least_m, double most_m);
 
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
-    // All its poses, as the source has them, in its order.
+    // All its images as named by the source, in its order.
     [[nodiscard]] std::vector<std::string> images() const;
     [[nodiscard]] const GivenAngles& given() const { return given_; }
 
     // Whether any pose has the vehicle's depth.
     [[nodiscard]] bool tells_depth() const;
 
-    // Which angles poses have from anywhere: the source, or a rig that stands in for it.
+    // Which angles are known from any source, including a rig that replaces the navigation's.
     [[nodiscard]] const GivenAngles& known() const { return known_; }
     void take_angles_of_rig() { known_ = {.pitch = true, .roll = true}; }
 

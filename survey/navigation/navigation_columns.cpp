@@ -28,7 +28,7 @@ bool is_unknown(std::string_view field) {
     return std::ranges::find(kUnknown, lower_case(std::string(field))) != kUnknown.end();
 }
 
-// 2,15, as spreadsheets in half of Europe write it.
+// 2,15, as spreadsheets write it in half of Europe.
 bool has_decimal_comma(std::string_view field) {
     const std::size_t comma = field.find(',');
     return comma != std::string_view::npos && comma > 0 && comma + 1 < field.size() &&
@@ -57,7 +57,7 @@ using Header = std::vector<std::string>;
 
 struct KnownFormat {
     std::string name;
-    // In lower case, the first that is there counts.
+    // In lower case; the first one present is used.
     std::array<std::vector<std::string>, kNavigationFields.size()> columns;
 };
 
@@ -73,7 +73,7 @@ std::vector<KnownFormat> formats_in(std::string_view json) {
     return formats;
 }
 
-// PANGAEA's comes last, and separately: its altitude [m], for one, is above sea level.
+// PANGAEA's comes last and separately, since its altitude [m], for one, is above sea level.
 std::span<const KnownFormat> formats_of(const HeaderRequest& request) {
     static const std::vector<KnownFormat> kFormats = formats_in(navigation_formats().front().json);
     const std::span<const KnownFormat> all(kFormats);
@@ -94,7 +94,7 @@ std::string is_it(std::string_view wanted, const Header& header) {
     return near.empty() ? "" : fmt::format(" (is it '{}'?)", printable(near));
 }
 
-// A header may not be a header at all, but a line of any length.
+// A header may be any line, of any length.
 std::string shown_columns(const Header& header) {
     constexpr std::size_t kMostLetters = 400;
     std::string words;
@@ -105,7 +105,7 @@ std::string shown_columns(const Header& header) {
     return printable(words);
 }
 
-// Those of --columns, as far as they are there.
+// Those of --columns that are present.
 NavigationColumns given_columns(const Header& header, const ColumnNames& given) {
     NavigationColumns columns;
     for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
@@ -145,8 +145,8 @@ bool has_pose_and_name(const NavigationColumns& columns) {
            (columns.place(NavigationField::Image) || columns.place(NavigationField::Time));
 }
 
-// The format with most of its own columns present: image, else altitude, else time, where --columns
-// may have replaced the rest.
+// The format with most of its own columns present: image, otherwise altitude, otherwise time, since
+// --columns may have replaced the rest.
 std::optional<NavigationColumns> recognised(const NavigationColumns& given,
                                             std::span<const KnownFormat> formats,
                                             const Header& header) {
@@ -192,7 +192,7 @@ std::optional<NavigationColumns> recognised(const NavigationColumns& given,
                  sea);
 }
 
-// With an angle under another name, the rig's would be used silently.
+// If an angle had another name, the rig's would be used silently.
 void require_known_angles(const HeaderRequest& request,
                           const Header& header,
                           const NavigationColumns& columns) {
@@ -213,7 +213,7 @@ void require_known_angles(const HeaderRequest& request,
     }
 }
 
-// The unit that a column's name ends in, as in "pitch [deg]", "altitude (cm)" and "roll_rad".
+// The unit at the end of a column's name, as in "pitch [deg]", "altitude (cm)" and "roll_rad".
 std::string unit_in(std::string_view column) {
     const bool has_bracket = column.ends_with(']') || column.ends_with(')');
     if (has_bracket) column.remove_suffix(1);
@@ -222,7 +222,7 @@ std::string unit_in(std::string_view column) {
     return lower_case(std::string(trimmed(column.substr(start + 1))));
 }
 
-// A column named by --columns may state another unit than it would be read in.
+// The name of a column given by --columns may state a unit other than the expected one.
 void require_units(const HeaderRequest& request, const NavigationColumns& columns) {
     static const std::set<std::string> kLengths{
         "mm", "cm", "dm", "km", "ft", "feet", "foot", "inch", "inches", "fathoms", "fm"};
@@ -261,7 +261,7 @@ NavigationColumns navigation_columns(const HeaderRequest& request, const Header&
     const NavigationColumns given = given_columns(header, request.given);
     std::optional<NavigationColumns> columns = recognised(given, formats_of(request), header);
     if (!columns) refuse_header(request, header, given);
-    // One of them says where the images are; which, --columns may choose.
+    // One of them identifies the images; --columns may select which.
     auto& image = columns->places[0];
     auto& time = columns->places[1];
     constexpr auto kFirstOfPlace = static_cast<std::ptrdiff_t>(NavigationField::East);

@@ -4,11 +4,11 @@
 // (formats.json): Aphotic's, oplab's, BIIGLE's and SQUIDLE+'s CSV, HabCam's .img, PANGAEA's tab
 // files, and any table whose names are clear enough, with units if in doubt.
 //
-// Where the vehicle was is read on request alone: east and north in metres of any one frame, the
-// heading clockwise from north, the depth below the sea level. x and y are of no certain direction,
-// and taken where they are given for east and north.
+// The vehicle's place is read only on request: east and north in metres of any one frame, the
+// heading clockwise from north, the depth below the sea level. x and y have no certain direction,
+// and are used only if given for east and north.
 //
-// All are in metres and degrees. Heights over the sea level are never taken: gps_altitude,
+// All are in metres and degrees. Heights above the sea level are never used: gps_altitude,
 // SUB_altitude, pose.dep, depth, and PANGAEA's altitude [m].
 //
 // Sources: oplab_pipeline, auv_nav/sensors.py and tools/csv_tools.py, and its
@@ -29,7 +29,7 @@ namespace aphotic {
 
 // A number of a pose, as in tables and tags.
 
-// NaN if the field says unknown, by None or an empty cell; anything else that is not a number is a
+// NaN if the field is unknown, by None or an empty cell; anything else that is not a number is a
 // fault of the pose.
 [[nodiscard]] double number_in(ImagePose& pose, std::string_view column, std::string_view field);
 
@@ -44,14 +44,14 @@ inline constexpr std::array<std::string_view, 9> kNavigationFields{"image",
                                                                    "heading_deg",
                                                                    "depth_m"};
 
-// Other names of columns, by ours of kNavigationFields.
+// The file's names of columns, by ours of kNavigationFields.
 using ColumnNames = std::map<std::string, std::string>;
 
 struct NavigationColumns {
     std::string format{};
     std::size_t count = 0;  // of all columns
     std::array<std::optional<std::size_t>, kNavigationFields.size()> places{};
-    std::array<std::string, kNavigationFields.size()> names{};  // as the header has them
+    std::array<std::string, kNavigationFields.size()> names{};  // as in the header
 
     [[nodiscard]] std::optional<std::size_t> place(NavigationField field) const {
         return places.at(static_cast<std::size_t>(field));
@@ -59,7 +59,7 @@ struct NavigationColumns {
     [[nodiscard]] const std::string& name(NavigationField field) const {
         return names.at(static_cast<std::size_t>(field));
     }
-    // Images are found by their times, since the table does not name them.
+    // Images are located by their times, since the table does not name them.
     [[nodiscard]] bool is_track() const { return !place(NavigationField::Image); }
 };
 
@@ -75,20 +75,20 @@ struct NavigationFormats {
 [[nodiscard]] std::span<const NavigationFormats> navigation_formats();
 
 struct HeaderRequest {
-    std::string file{};  // it and its line are for messages
+    std::string file{};  // file and line are for messages
     std::size_t line = 0;
     ColumnNames given{};
     AngleUnit angles_in = AngleUnit::Degrees;
     bool is_pangaeas = false;
-    bool has_places = false;  // where the vehicle was is asked for
+    bool has_places = false;  // the vehicle's place is requested
 };
 
-// Whether the columns are of a format, including the given ones.
+// Whether the columns, including the given ones, match a format.
 [[nodiscard]] bool is_navigation_header(const HeaderRequest& request,
                                         const std::vector<std::string>& header);
 
-// An InputError, which begins with file and line, if the columns are of no format, a given one is
-// missing, or one states a unit in its name that is not the one it would be read in.
+// An InputError, which begins with file and line, if the columns match no format, a given one is
+// missing, or the unit in a column's name contradicts the expected one.
 [[nodiscard]] NavigationColumns navigation_columns(const HeaderRequest& request,
                                                    const std::vector<std::string>& header);
 

@@ -22,29 +22,30 @@ namespace aphotic {
 
 namespace {
 
-// Poses from stereo_pose_est.data of the Australian Centre for Field Robotics (ACFR), of the AUV
-// Sirius and its kin: fifteen words a line, without a header,
+// Poses from stereo_pose_est.data of the Australian Centre for Field Robotics (ACFR), from the AUV
+// Sirius and similar ones: fifteen words per line, without a header,
 //
 //   identifier time latitude longitude X Y Z phi theta psi left right altitude radius cross-over
 //
-// Each line tells of two images, left and right. X, Y and Z are metres north and east of the file's
-// origin, and down. phi, theta and psi (radians) turn north, east and
-// down, in this order of axes, into the stereo frame: X right in the image, Y to its bottom, Z
-// along the axis. So the way down has these parts in the camera's own frame, whose x runs to the
-// image's top (vehicle_pose.h):
+// Each line describes two images, left and right. X, Y and Z are metres north and east of the
+// file's origin, and down. phi, theta and psi (radians) turn north, east and down, in this order of
+// axes, into the stereo frame: X right in the image, Y to its bottom, Z along the axis. So the
+// downward direction has these parts in the camera's own frame, whose x points to the image's top
+// (vehicle_pose.h):
 //
 //   (x, y, z) = (-cos theta sin phi, -sin theta, cos theta cos phi)
 //   pitch = -asin x        roll = atan2(y, z)
 //
 // and the image's top points to
 //
-//   north, east = sin psi cos phi - cos psi sin theta sin phi, -cos psi cos phi - sin psi sin theta
-//   sin phi
+//   north = sin psi cos phi - cos psi sin theta sin phi
+//   east  = -cos psi cos phi - sin psi sin theta sin phi
 //
-// phi = 0.0873, theta = 0: pitch 5.002 degrees, roll 0. The altitude is the vehicle's, 0 where its
-// altimeter lost the floor.
+// phi = 0.0873, theta = 0: pitch 5.002 degrees, roll 0. The altitude is the vehicle's, and 0 where
+// its altimeter lost the floor.
 //
 // Source: the comments that seabed_slam and oplab_pipeline (auv_nav, parse_acfr_stereo_pose.py)
+// write into these files.
 // write into these files.
 enum AcfrWord : std::size_t {
     kX = 4,
@@ -65,7 +66,7 @@ bool is_numeric_word(std::string_view word) {
     return none.fault.empty();
 }
 
-// Fifteen words, numbers but for the two names.
+// Fifteen words, all numbers except the two names.
 bool is_acfr_line(const std::vector<std::string>& words) {
     if (words.size() != kAcfrWords) return false;
     for (std::size_t i = 0; i < kAcfrWords; ++i) {
@@ -75,7 +76,7 @@ bool is_acfr_line(const std::vector<std::string>& words) {
     return true;
 }
 
-// Of a line, be it one of these or not: that is the poses' fault.
+// For any line; one that is not of this kind is a fault of the poses.
 std::array<ImagePose, 2> acfr_poses(const std::vector<std::string>& words, std::size_t line) {
     ImagePose pose{.line = line};
     if (words.size() != kAcfrWords) {
@@ -83,7 +84,7 @@ std::array<ImagePose, 2> acfr_poses(const std::vector<std::string>& words, std::
     } else {
         const double phi = number_in(pose, "X-axis Euler angle", words[kPhi]);
         const double theta = number_in(pose, "Y-axis Euler angle", words[kTheta]);
-        ImagePose unsaid;  // who asks for the place says what is missing
+        ImagePose unsaid;  // users of the place report what is missing
         const auto of_place = [&](AcfrWord word) { return number_in(unsaid, "", words[word]); };
         const double psi = of_place(kPsi);
         const double tilt = std::sin(theta) * std::sin(phi);
@@ -106,10 +107,10 @@ std::array<ImagePose, 2> acfr_poses(const std::vector<std::string>& words, std::
 using enum NavigationField;
 using Fields = std::vector<std::string>;
 
-// What separates fields, where commas are more likely than what may stand within a name.
+// Separators, with commas before those that may occur within a name.
 constexpr std::array kSeparators{',', ';', '\t', kByBlanks};
 
-// How lines are taken apart, and what their fields say.
+// How lines are split, and the meaning of their fields.
 struct Layout {
     NavigationColumns columns{};
     char separator = ',';
@@ -157,7 +158,7 @@ bool is_habcam_img(const Fields& fields) {
     return fields.size() == comma_fields(kHabCamColumns).size() && are_numbers(fields, 1, 5);
 }
 
-// A header row of as many words has no number; a line that is spoilt has one left.
+// A header row of as many words has no number; a corrupted line retains one.
 bool is_eic(const Fields& fields) {
     return fields.size() == kEicFields &&
            (are_numbers(fields, 1, 1) || are_numbers(fields, 2, 1) || are_numbers(fields, 3, 1));
@@ -196,7 +197,7 @@ ImagePose pose_in(const Layout& layout,
     pose.sled.altitude_m = number(Altitude);
     if (columns.place(Pitch)) pose.sled.pitch_rad = number(Pitch) * radians_per_unit;
     if (columns.place(Roll)) pose.sled.roll_rad = number(Roll) * radians_per_unit;
-    // Who asks for it says so where one is missing.
+    // Users of the place report what is missing.
     ImagePose unsaid;
     const auto of_place = [&](NavigationField field, double unit) {
         const auto column = columns.place(field);
@@ -222,20 +223,20 @@ void add_time(NavigationRow& row, const NavigationColumns& columns, const Fields
         shown_word(text));
 }
 
-// A table's columns and what parts them, judged at its first line, which may be a header.
+// A table's columns and separator, determined from its first line, which may be a header.
 class LayoutReader {
   public:
     LayoutReader(TableText& table, HeaderRequest request)
         : table_(table), request_(std::move(request)) {}
 
-    // None: the text ends without a table. Else the table is at its first row of values.
+    // Empty if the text ends without a table. Otherwise the table is at its first row of values.
     std::optional<Layout> read() {
         while (table_.find_row('\0')) {
             request_.line = table_.line();
             if (auto layout = of_header()) return layout;
             if (auto layout = of_comment()) return layout;
             if (auto layout = of_values()) return layout;
-            if (!is_passed_over()) return with_header(most_frequent());  // which refuses it
+            if (!is_passed_over()) return with_header(most_frequent());  // throws
             table_.pass_line();
         }
         return std::nullopt;
@@ -257,7 +258,7 @@ class LayoutReader {
         return std::nullopt;
     }
 
-    // A header row behind the mark of a comment, just before a line of as many fields.
+    // A header row in a comment, just before a line with as many fields.
     std::optional<Layout> of_comment() {
         TableText comment(request_.file, table_.last_comment());
         for (const char separator : kSeparators) {
@@ -272,7 +273,7 @@ class LayoutReader {
         return std::nullopt;
     }
 
-    // By what the values are.
+    // From the values themselves.
     std::optional<Layout> of_values() {
         for (const char separator : kSeparators) {
             if (!is_habcam_img(table_.row(separator).fields)) continue;
@@ -292,8 +293,8 @@ class LayoutReader {
         return layout;
     }
 
-    // Rows of separators alone, comments that only what is not separated by ; can have, what
-    // spreadsheets write of their separator, and the origin of ACFR's coordinates.
+    // Rows of separators only, comments that begin with ;, the separator line of spreadsheets, and
+    // the origin of ACFR's coordinates.
     [[nodiscard]] bool is_passed_over() const {
         const auto is_empty = [](const std::string& field) { return field.empty(); };
         return std::ranges::all_of(table_.row(most_frequent()).fields, is_empty) ||
@@ -301,7 +302,7 @@ class LayoutReader {
                table_.begins_with("ORIGIN_LATITUDE") || table_.begins_with("ORIGIN_LONGITUDE");
     }
 
-    // Blanks part words only where nothing else does.
+    // Blanks separate words only if nothing else does.
     [[nodiscard]] char most_frequent() const {
         char best = kByBlanks;
         std::size_t most = 1;
@@ -321,7 +322,7 @@ bool is_pangaeas(std::string_view text) {
     return without_byte_order_mark(text).starts_with("/* DATA DESCRIPTION");
 }
 
-// Where a last number may lack digits: the line that ends with the file, and what stands there.
+// A warning if a last number may lack digits: the line ends with the file.
 std::string cut_warning(const std::string& name, const Layout& layout, const TextRow& row) {
     if (row.has_line_end || layout.is_acfrs || row.fields.size() != layout.columns.count) return "";
     const std::size_t last = row.fields.size() - 1;
@@ -378,7 +379,7 @@ NavigationTable parse_navigation_csv(const std::string& name,
     NavigationTable table;
     while (layout && lines.find_row(layout->separator)) {
         const TextRow row = lines.take_row(layout->separator);
-        // Spreadsheets end a table with rows of commas alone.
+        // Spreadsheets end a table with rows of commas only.
         if (std::ranges::all_of(row.fields, &std::string::empty)) continue;
         if (table.rows.size() >= kMostNavigationRows) {
             fail_at_line(name, row.line, "found more than {} lines", kMostNavigationRows);

@@ -7,17 +7,17 @@
 //   201207.0001.tif,2.05,4.8,-0.3
 //
 // Fields are separated by commas, semicolons, tabs or blanks, whichever makes the table's first
-// line a known header; comments may precede it (table_text.h). Or from lines without a header,
-// recognised by their values:
+// line a known header; comments may precede it (table_text.h). Or poses come from lines without a
+// header, recognised by their values:
 //
 //   201207.0001.tif 2.05 4.8 -0.3        HabCam's .eic
 //   sixteen fields                       HabCam's .img
 //   thirteen fields or more between ;    Matisse's .dim2
 //   fifteen words                        ACFR's stereo_pose_est.data (navigation_csv.cpp)
 //
-// Lines that are empty or have only separators are skipped. A cell that is not a number loses only
-// its own line, as does a line with too few or too many fields. A table without a column for pitch
-// or roll leaves it to the rig.
+// Lines that are empty or have only separators are skipped. A cell that is not a number invalidates
+// only its own line, as does a wrong number of fields. Without a column for pitch or roll, the
+// rig's is used.
 #pragma once
 
 #include "survey/navigation/navigation.h"
@@ -30,8 +30,8 @@
 
 namespace aphotic {
 
-// A line of the table. In a track, poses have a time instead of an image, or a fault that says why
-// not.
+// A line of the table. In a track, poses have a time instead of an image, or a fault that explains
+// why not.
 struct NavigationRow {
     ImagePose pose{};
     double time_s = 0.0;  // since 1970 (time_text.h)
@@ -42,11 +42,11 @@ inline constexpr std::size_t kMostNavigationRows = 2'000'000;  // a day of 20 Hz
 struct NavigationTable {
     NavigationColumns columns{};
     std::vector<NavigationRow> rows{};
-    bool are_cameras_own = false;  // angles, in radians: not those of the vehicle
-    std::string cut_warning{};     // of a last line without a line break, whose last number matters
+    bool are_cameras_own = false;  // angles, in radians: not the vehicle's
+    std::string cut_warning{};     // for a last line without a line break whose last number is used
 };
 
-// name is for messages. An unknown header, or no line at all, is an InputError that names the line.
+// name is for messages. An InputError, with the line, for an unknown header or an empty table.
 [[nodiscard]] NavigationTable parse_navigation_csv(const std::string& name,
                                                    std::string_view text,
                                                    const Sled& rig_sled,

@@ -83,7 +83,7 @@ Mounting mounting_of(const NavigationOptions& options, const Rig* rig) {
     return mounting;
 }
 
-// Of the camera, from the vehicle's.
+// For the camera, from the vehicle's pose.
 bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptions& options) {
     if (!fault_of(sled).empty()) return false;
     try {
@@ -94,8 +94,8 @@ bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptio
     }
 }
 
-// A pose for each image, from read(pose), in several threads, since files are opened, perhaps over
-// a network. Its errors become the pose's fault.
+// A pose for each image, from read(pose), in several threads, since files are opened, possibly over
+// a network. Errors become the pose's fault.
 template <typename Read>
 std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files,
                                 std::size_t jobs,
@@ -122,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> in_our_order(const ColumnNames&
     return ordered;
 }
 
-// Times given in vain would be thought to count.
+// Options about times must not be ignored silently.
 void require_no_times(const NavigationOptions& options) {
     if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
     throw InputError(
@@ -236,7 +236,7 @@ void require_no_place(const NavigationOptions& options, const Mounting& mounting
         options.source);
 }
 
-// Angles that the navigation does not have are the rig's, which are the camera's.
+// Angles missing from the navigation are the rig's, which are the camera's.
 void require_angles(const Navigation& navigation,
                     const NavigationOptions& options,
                     const Mounting& mounting,
@@ -259,7 +259,7 @@ void require_angles(const Navigation& navigation,
     }
 }
 
-// An iFDO states its fields and their units, and that they are the camera's.
+// An iFDO defines its fields and their units, and that they are the camera's.
 void require_ifdo_alone(const NavigationOptions& options) {
     require_no_times(options);
     const auto refuse = [&](std::string_view option) {
@@ -287,7 +287,7 @@ Navigation navigation_of_ifdo(std::string_view text,
     if (navigation.given().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
     if (navigation.given().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
     navigation.note(std::move(notes));
-    // JSON has a bracket at its end; YAML may be cut anywhere.
+    // JSON ends with a bracket; YAML may be truncated anywhere.
     if (!text.ends_with('\n') && !text.ends_with('}')) {
         navigation.warn(
             fmt::format("{}: the file ends without a line break: if it was truncated, its last "
@@ -329,7 +329,7 @@ Navigation parse_navigation(std::string_view text,
                             const std::vector<ImageFile>& files,
                             const Rig* rig) {
     require_text(options.source, text);
-    // The camera's own poses are not mounted.
+    // The camera's own poses need no mounting.
     if (is_ifdo(text)) return limited(navigation_of_ifdo(text, options, rig), options);
     const Mounting mounting = mounting_of(options, rig);
     const NavigationTable table = parse_navigation_csv(options.source,

@@ -8,10 +8,10 @@
 //
 // The times of images (image_time.h) are shifted by clock_offset_s and looked up in poses over
 // time. Lines of the track without a time, or with a pose that is impossible for a sled or outside
-// the altitudes, are omitted: an altimeter that loses the floor makes a gap, and no altitude
-// between 2 m and 0.
+// the altitude range, are omitted: an altimeter that loses the floor leaves a gap, and not an
+// altitude between 2 m and 0.
 //
-// Otherwise poses are the vehicle's and are converted to the camera's (vehicle_pose.h).
+// All other poses are the vehicle's and are converted to the camera's (vehicle_pose.h).
 #pragma once
 
 #include "survey/images/image_files.h"
@@ -35,13 +35,13 @@ namespace aphotic {
 //
 //   lat=40.612345,lon=-67.123456,hdg=181.20,pitch=-4.80,roll=0.30,alt0=2.05,alt1=2.11,depth=61.2,...
 //
-// Keys with their values, parted by commas, in any order. Angles are in degrees, altitudes in
-// metres: alt0 and alt1 are the two altimeters'.
+// Keys with their values, separated by commas, in any order. Angles are in degrees, altitudes in
+// metres; alt0 and alt1 are the two altimeters'.
 //
 // Source: howland54/habcam-dsvimc.
 
-// alt0, pitch and roll, or the keys that `given` names instead. An InputError if it names anything
-// but these three.
+// alt0, pitch and roll, or the keys that `given` names instead. An InputError if it names any
+// other.
 [[nodiscard]] ColumnNames tag_names(const ColumnNames& given);
 
 // A fault of the pose, not an error, if the description has none of them.
@@ -57,7 +57,7 @@ struct NavigationOptions {
     std::string source{};  // a file, or kNavigationInTags
     ColumnNames columns{};
     AngleUnit angles_in = AngleUnit::Degrees;
-    bool has_places = false;  // where the vehicle was is read, too
+    bool has_places = false;  // also read the vehicle's place
     std::string time_mask{};  // of the images' names
     double clock_offset_s = 0.0;
     double longest_gap_s = kLongestGap_s;
@@ -68,8 +68,8 @@ struct NavigationOptions {
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());  // files read at a time
 };
 
-// What else is known of the sled: a rig, or null. An InputError if the source as a whole cannot be
-// understood, or lacks the angles that the camera's pose needs.
+// rig: the source of whatever the navigation lacks, or null. An InputError if the source as a whole
+// cannot be interpreted, or lacks the angles that the camera's pose needs.
 [[nodiscard]] Navigation read_navigation(const NavigationOptions& options,
                                          const std::vector<ImageFile>& files,
                                          const Rig* rig);

@@ -2,13 +2,13 @@
 //
 // Navigation from an image set's iFDO (ifdo.h), for each image or as a default for all:
 //
-//   image-meters-above-ground     h, the camera's height over the sea floor, plumb
+//   image-meters-above-ground     h, the camera's vertical height over the sea floor
 //   image-camera-pitch-degrees    p, positive bow up
 //   image-camera-roll-degrees     r, positive starboard down
 //
-// which are the camera's own: its mounting on a vehicle is already included. With yaw, pitch and
-// roll applied in this order the axis dips by cos p cos r, and the altitude of a pose, which is
-// along the axis, is h / (cos p cos r). Angles that no image has are the rig's.
+// These are the camera's own: its mounting on a vehicle is already included. With yaw, pitch and
+// roll applied in this order, the axis has the downward component cos p cos r, and the altitude
+// of a pose, which is along the axis, is h / (cos p cos r). Angles that no image has are the rig's.
 //
 // image-altitude-meters is above sea level, negative in the sea, and never used.
 #pragma once

@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::string_view kSpaceAndTab = " \t";
 
-// What ends a field.
+// The characters that end a field.
 std::string stops_of(char separator) {
     std::string stops = "\r\n";
     stops += separator == kByBlanks ? std::string(kSpaceAndTab) : std::string(1, separator);
     return stops;
 }
 
-// What may stand between a quote and the field's end.
+// The characters allowed between a quote and the field's end.
 std::string_view padding_of(char separator) {
     if (separator == kByBlanks) return {};
     return separator == '\t' ? " " : kSpaceAndTab;

@@ -3,10 +3,9 @@
 // A table as text, line by line and field by field, as loggers, databases and spreadsheets write
 // it: RFC 4180 with any separator, and comments.
 //
-// Lines end in LF, CR LF or CR. A field in double quotes may contain separators, line ends, and a
-// quote, which is doubled; quotes that do not close before a separator or a line end are ordinary
-// characters. Blanks around a field are ignored. Separated by blanks, a line has as many fields as
-// words.
+// Lines end in LF, CR LF or CR. A field in double quotes may contain separators, line ends, and
+// quotes, which are doubled; quotes that do not close before a separator or a line end are ordinary
+// characters. Blanks around a field are ignored. With blanks as separators, each word is a field.
 //
 // A line that begins with #, % or // is a comment, and so is everything from a line that begins
 // with /* to the next */. So is one that begins with ;, unless semicolons separate the fields.
@@ -24,7 +23,7 @@ inline constexpr std::size_t kMostTableFields = 10000;  // of a line
 inline constexpr std::size_t kMostFieldBytes = std::size_t{1} << 16U;
 
 struct TextRow {
-    std::size_t line = 0;  // its first
+    std::size_t line = 0;  // the first of its lines
     std::vector<std::string> fields{};
     bool has_line_end = true;
 };
@@ -35,10 +34,10 @@ class TableText {
     TableText(std::string name, std::string_view text);
 
     // Advances to a line that is neither empty nor a comment; false if there is none. With a
-    // separator of '\0', which means unknown yet, a line that begins with ; is neither.
+    // separator of '\0', which means not yet known, a line that begins with ; is neither.
     bool find_row(char separator);
 
-    // The row that begins here. take_row() moves past it. An InputError if it has more than
+    // The row that begins here; take_row() also moves past it. An InputError if it has more than
     // kMostTableFields, or one of more than kMostFieldBytes.
     [[nodiscard]] TextRow row(char separator) const;
     TextRow take_row(char separator);

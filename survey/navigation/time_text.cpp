@@ -18,10 +18,10 @@ namespace {
 constexpr double kMinute_s = 60.0;
 constexpr double kHour_s = 3600.0;
 
-// 2024-03-09, or 09.03.2024: between points the day comes first everywhere; a time; parts of a
+// 2024-03-09, or 09.03.2024, since dates with points begin with the day; a time; a fraction of a
 // second; Z or hours and minutes ahead of UTC.
 std::optional<double> calendar_time_s(std::string_view text) {
-    constexpr std::size_t kMostLetters = 100;  // of digits, too
+    constexpr std::size_t kMostLetters = 100;  // including digits
     static const std::regex kTime(
         "(?:([0-9]{4})([-/:])([0-9]{2})\\2([0-9]{2})|([0-9]{2})\\.([0-9]{2})\\.([0-9]{4}))[ T]"
         "([0-9]{2}):([0-9]{2}):([0-9]{2})(?:[.,]([0-9]+))?"
@@ -49,7 +49,7 @@ std::optional<double> calendar_time_s(std::string_view text) {
 }
 
 std::optional<double> seconds_in(std::string_view text) {
-    constexpr double kMost_s = 1e11;  // more are milliseconds
+    constexpr double kMost_s = 1e11;  // larger numbers are milliseconds
     const auto seconds = read_number<double>(text);
     return seconds && std::abs(*seconds) < kMost_s ? seconds : std::nullopt;
 }
@@ -61,7 +61,7 @@ std::optional<double> unix_time_s(const DateAndTime& time) {
     const year_month_day date{year(time.year),
                               month(static_cast<unsigned>(time.month)),
                               day(static_cast<unsigned>(time.day))};
-    // A leap second is the first of the next minute, as POSIX has it.
+    // A leap second is the first of the next minute, as in POSIX.
     const bool is_of_clock = time.hour >= 0 && time.hour < 24 && time.minute >= 0 &&
                              time.minute < 60 && time.second >= 0.0 && time.second < 61.0;
     if (!date.ok() || !is_of_clock) return std::nullopt;

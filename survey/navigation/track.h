@@ -5,10 +5,10 @@
 //   pose(t) = pose_i + (pose_i+1 - pose_i) (t - t_i) / (t_i+1 - t_i),     t_i <= t <= t_i+1
 //
 // and their places alike, headings the shorter way round. At a point's own time it is that point's
-// pose. A point's angles are within 89.9 degrees of level,
-// so that this is the shorter way round. Where altitude changes with an acceleration a, it is off
-// by a (t_i+1 - t_i)^2 / 8 at most: under a sled that a swell heaves by half a metre every ten
-// seconds, 0.2 m/s^2, that is 0.1 m over kLongestGap_s, the width of an altitude bin.
+// pose. A point's angles are within 89.9 degrees of level, so that this is the shorter way round.
+// If the altitude has an acceleration a, the error is at most a (t_i+1 - t_i)^2 / 8: for a sled
+// that swell heaves by half a metre every ten seconds, 0.2 m/s^2, that is 0.1 m over kLongestGap_s,
+// the width of an altitude bin.
 #pragma once
 
 #include "survey/navigation/vehicle_pose.h"
@@ -29,7 +29,7 @@ struct TrackPoint {
 
 class Track {
   public:
-    // In any order; of several at one time the first is used.
+    // In any order; of several at the same time, the first is used.
     Track(std::vector<TrackPoint> points, double longest_gap_s);
 
     // An InputError if the time is before the first point, after the last, or between two that are
@@ -38,7 +38,7 @@ class Track {
     [[nodiscard]] Place place_at(double time_s) const;
 
   private:
-    // Two points, or twice one, and how far from the first to the second the time is.
+    // Two points, or one twice, and the time's position between them.
     struct Span {
         const TrackPoint& before;
         const TrackPoint& after;

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of whoever sees this way down.
+// For the frame in which this is the downward direction.
 double pitch_of(const Vector3d& down) {
     return -std::asin(std::clamp(down.x(), -1.0, 1.0));
 }
