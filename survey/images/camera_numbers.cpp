@@ -77,7 +77,7 @@ CameraNumbers with_rig(CameraNumbers camera, const Camera& rig) {
 
 ShotExposure shot_of(const Readout& readout) {
     constexpr double kMillisecondsPerSecond =
-        1e3;  // to divide by: 2.5 ms are 0.0025 s, rounded once
+        1e3;  // as a divisor: 2.5 ms are 0.0025 s, rounded once
     ShotExposure shot{.iso = readout.iso, .f_number = readout.f_number};
     if (readout.exposure_ms) shot.time_s = *readout.exposure_ms / kMillisecondsPerSecond;
     return shot;
@@ -158,7 +158,7 @@ std::optional<PlaneSize> size_if_readable(const ImageFile& file) {
     }
 }
 
-// Of the whole files.
+// For whole files.
 std::optional<PlaneSize> usual_file_size(const std::vector<ImageFile>& files) {
     constexpr std::size_t kFew = 9;
     const std::size_t count = std::min(kFew, files.size());

@@ -26,7 +26,7 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return std::ranges::mismatch(folder, path).in1 == folder.end();
 }
 
-// To a folder that it lies in, itself or by the links that led here: it has no end.
+// To a folder that contains it, itself or through the links that led here: an endless loop.
 bool leads_back(const fs::path& link, int folders_up) {
     const fs::path target = fs::canonical(link);
     fs::path folder = link.parent_path();
@@ -36,21 +36,21 @@ bool leads_back(const fs::path& link, int folders_up) {
     return false;
 }
 
-// Results are no raw images: those of this run, nor those of an earlier one.
+// Results are not raw images, whether of this run or of an earlier one.
 bool holds_results(const fs::path& folder, const fs::path& output) {
     std::error_code none;
     return fs::equivalent(folder, output, none) || fs::exists(folder / kCorrectionNotes, none) ||
            fs::exists(folder / kBaselineNotes, none);
 }
 
-// Of a folder of results that is itself the survey, as for their average: what else is made of each
-// image.
+// In a folder of results that is itself the survey, as for averaging them: the other files made
+// from each image.
 bool is_beside_results(const fs::path& path, bool is_folder) {
     return is_folder ? path.filename() == kSrgbFolder
                      : path.filename().string().ends_with(".mask.png");
 }
 
-// "24 .orf, 1 .csv": the most frequent first, of a few kinds.
+// "24 .orf, 1 .csv": the most frequent kinds, in order.
 std::string kinds_in_words(const std::map<std::string, std::size_t>& kinds) {
     constexpr std::size_t kMostKinds = 4;
     std::vector<std::pair<std::size_t, std::string>> by_count;
@@ -65,7 +65,7 @@ std::string kinds_in_words(const std::map<std::string, std::size_t>& kinds) {
     return words;
 }
 
-// Of raw files that are not read, what to do with them.
+// Raw formats that are not supported, for which a message suggests a remedy.
 bool is_other_raw(std::string_view extension) {
     constexpr std::string_view kRaws =
         ".orf,.rw2,.raf,.cr3,.pef,.srw,.x3f,.iiq,.3fr,.nrw,.erf,.kdc,.dcr,.raw";
@@ -115,7 +115,7 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
             if (!extension.empty() && extension.size() <= kMostBytes) ++others[extension];
             continue;
         }
-        // By its own name here, and not by that of a file elsewhere that it may be a link to.
+        // By its own name here, even if it links to a file elsewhere.
         files.push_back(
             {.source = file, .name = without_extension(file.lexically_relative(folder))});
     }

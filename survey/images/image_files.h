@@ -18,24 +18,24 @@ struct ImageFile {
     std::filesystem::path name;
 };
 
-// The files that `correct` and `baseline` leave in a folder of results, which identify it.
+// The files that `correct` and `baseline` write to a folder of results, which identify it.
 inline constexpr std::string_view kCorrectionNotes = "correction.json";
 inline constexpr std::string_view kBaselineNotes = "baseline.json";
 inline constexpr std::string_view kReportPage = "report.html";
-inline constexpr std::string_view kJournal = "corrected.jsonl";  // of what is done
-inline constexpr const char* kSrgbFolder = "srgb";               // of images to look at
+inline constexpr std::string_view kJournal = "corrected.jsonl";  // finished images
+inline constexpr const char* kSrgbFolder = "srgb";               // viewable images
 
-// In the order of the arguments, a folder's images sorted by name, those in the folders within it
-// among them, also by links; but for a link to a folder that it lies in. What lies in `output` and
-// in folders of results is left out; of one that is named itself, its linear images count alone.
-// What has an image's name and cannot be read, as a link that leads nowhere, is among them, for
-// require_file() to tell. An InputError when an argument is not there or is `output` itself, a
-// folder holds no image, or two images would have one name.
+// In the order of the arguments; a folder's images are sorted by name and include those in its
+// subfolders, also through links, except links to a folder that contains them. `output` and folders
+// of results are skipped; of a folder of results that is itself named, only the linear images are
+// used. Files with an image's name that cannot be read, such as broken links, are included, so that
+// require_file() reports them. An InputError if an argument does not exist or is `output` itself, a
+// folder holds no image, or two images would have the same name.
 [[nodiscard]] std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
                                                  const std::filesystem::path& output);
 
-// An InputError, without the image's name, unless it exists and is a file: reading a pipe would
-// block forever.
+// An InputError, without the image's name, unless it exists and is a regular file: reading a pipe
+// would block forever.
 void require_file(const std::filesystem::path& image);
 
 // Whether the file's name has an image's extension, such as .tif, ignoring case; and the path

@@ -49,8 +49,8 @@ std::vector<float> with_mirrored_rim(std::span<const float> plane, int width_px,
     return padded;
 }
 
-// Where a site finds a channel: four neighbours of equal weight, which repeat where there are two
-// or one.
+// The sites that supply a channel: four neighbours of equal weight, repeated where there are only
+// two or one.
 using Neighbours = std::array<std::ptrdiff_t, 4>;
 
 Neighbours neighbours_of(Mosaic mosaic, int column, int row, int channel, std::ptrdiff_t stride) {

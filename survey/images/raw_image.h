@@ -24,14 +24,14 @@ enum class Mosaic { None, Mono, Rggb, Bggr, Grbg, Gbrg };
     return mosaic > Mosaic::Mono;
 }
 
-// "RGGB" and its kin, or "mono", in any letter case.
+// "RGGB" and the like, or "mono", in any letter case.
 [[nodiscard]] std::optional<Mosaic> mosaic_named(std::string_view name);
 [[nodiscard]] std::string_view mosaic_name(Mosaic mosaic);
 
 // The channel that a site of a mosaic sees: 0, 1 or 2; 0 for mono.
 [[nodiscard]] int channel_at(Mosaic mosaic, int column, int row);
 
-// The pattern left after cropping so many columns and rows at the left and top.
+// The pattern left after cropping this many columns and rows at the left and top.
 [[nodiscard]] Mosaic shifted(Mosaic mosaic, int columns, int rows);
 
 struct RawImage {
@@ -46,23 +46,22 @@ struct RawImage {
     [[nodiscard]] int planes() const { return mosaic == Mosaic::None ? kChannels : 1; }
 };
 
-// An InputError unless it has this size, "like the map": if it is twice as wide, the message
+// An InputError unless it has this size, "like the map"; if it is twice as wide, the message
 // explains how to select one of two cameras' images.
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
 
-// And unless it also has this pattern.
+// The same, and unless it has this pattern.
 void require_like(const RawImage& image, const RawImage& other, std::string_view as);
 
 struct SensorLevels {
     float black = 0.0F;
-    float white = std::numeric_limits<float>::infinity();  // from here up it is saturated
+    float white = std::numeric_limits<float>::infinity();  // saturated from here up
 };
 
-// R, G, B planar from a Bayer mosaic of two pixels or more each way. A site keeps its own sample;
+// R, G, B planar from a Bayer mosaic of at least two pixels each way. A site keeps its own sample;
 // the other two channels are the mean of the nearest two or four sites, which is bilinear
-// interpolation. Beyond the edge the mosaic goes on mirrored about its outermost pixels, so that
-// sites keep their colours. A plane that is linear in column and row comes back unchanged, but at
-// the edge.
+// interpolation. Beyond the edge the mosaic is mirrored about its outermost pixels, so that sites
+// keep their colours. A plane that is linear in column and row is reproduced, except at the edge.
 [[nodiscard]] std::vector<float> demosaiced(std::span<const float> plane,
                                             int width_px,
                                             int height_px,
@@ -81,7 +80,7 @@ struct SitePlane {
 
 [[nodiscard]] std::vector<SitePlane> site_planes(const RawImage& image);
 
-// Puts the planes back where site_planes() took them from.
+// Puts the planes of site_planes() back in place.
 void put_site_planes(const std::vector<SitePlane>& planes, RawImage& image);
 
 }  // namespace aphotic

@@ -23,7 +23,7 @@ namespace {
     throw InputError("found the channels {}; allowed: {}", names_of(image.channels), allowed);
 }
 
-// Where those that are wanted stand among the file's.
+// The positions of the wanted channels among the file's.
 std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     if (mosaic != Mosaic::None) {
         if (image.channels.size() != 1) {
@@ -47,7 +47,7 @@ std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     return places;
 }
 
-// The places' planes, and of each what is in the crop.
+// The planes at these positions, cropped.
 std::vector<float> kept_of(std::vector<float> planes,
                            PlaneSize size,
                            const std::vector<std::size_t>& places,
@@ -106,7 +106,7 @@ SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mo
             .date_time = {}};
 }
 
-// Of a file of many channels one at a time: the others may be of any number.
+// One plane at a time if the file has many channels: it may have any number of others.
 std::vector<float> wanted_planes(const AnyImage& image,
                                  PlaneSize size,
                                  const std::vector<std::size_t>& places,
@@ -121,7 +121,7 @@ std::vector<float> wanted_planes(const AnyImage& image,
     return all;
 }
 
-// Of what whole numbers can be; beyond it, levels are those of other files.
+// Whole numbers have a limit; levels beyond it belong to other files.
 void require_levels(const SensorLevels& levels, double most) {
     if (levels.white > most) {
         throw InputError("white level: found {}; allowed: up to {}, the file's largest number",
@@ -179,7 +179,7 @@ SurveyImage survey_image_of(const RawFile& file, const CameraNumbers& camera) {
     return taken;
 }
 
-// What read() gives, and its messages without the file's name.
+// The result of read(), whose messages lose the file's name.
 template <typename Read>
 auto without_name(const fs::path& file, const Read& read) {
     require_file(file);

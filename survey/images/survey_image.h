@@ -20,17 +20,15 @@ struct SurveyImage {
     double rounding = 0.0;  // standard deviation of its numbers' rounding; 0 for floats
     std::string description;
     std::string date_time;
-    double exposure = 1.0;  // relative to the reference: its light is divided by it
-    double light_share =
-        1.0;  // share of the survey's light that was on; and which strobes were out
+    double exposure = 1.0;     // relative to the reference: its light is divided by it
+    double light_share = 1.0;  // share of the survey's light that was on, and strobes that were out
     std::uint64_t strobes_out = 0;  // (survey/dropouts.h)
-    SharedTags tags{};              // of the file; none: it has none
+    SharedTags tags{};              // the file's; empty: it has none
 };
 
-// An InputError if it cannot be read, lacks the requested part, or does not have the expected
-// channels: one for a mosaic or a mono camera, else R, G and B. A raw file states its own pattern,
-// and is refused with another. Messages do not name the image; whoever lists the skipped images
-// does.
+// An InputError if it cannot be read, lacks the requested part, or has unexpected channels: it must
+// have one for a mosaic or a mono camera, otherwise R, G and B. A raw file states its own pattern,
+// and any other is rejected. Messages do not name the image; the list of skipped images does.
 [[nodiscard]] SurveyImage read_survey_image(const std::filesystem::path& file,
                                             const CameraNumbers& camera);
 
