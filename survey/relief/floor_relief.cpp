@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-// Along the ray to where Z is so much, or |P|: its origin is within a port.
+// Along the ray to where Z, or |P|, has this value: its origin is within a port.
 double length_to(const WaterRay& ray, double depth_m, DepthIs is) {
     if (is == DepthIs::AlongAxis) return (depth_m - ray.origin_m.z()) / ray.direction.z();
     const double along = ray.origin_m.dot(ray.direction);
@@ -37,7 +37,7 @@ std::vector<InversePlace> places_of(const DepthMap& map, DepthIs is, const Relie
         for (int column = 0; column < map.width_px; ++column) {
             const float depth_m = map.depth_m[places.size()];
             const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
-            // A hole has the place of the ray's direction, near enough behind a port.
+            // A hole takes the place of the ray's direction, which is near enough behind a port.
             const double length_m = length_to(ray, std::isfinite(depth_m) ? depth_m : 1.0, is);
             const Vector3d point_m = point_on(ray, length_m);
             const Vector3d place = point_m / point_m.z();
@@ -57,7 +57,7 @@ double pixel_rad(const ReliefMapMaker& rays, int width_px, int height_px) {
     return angle_between(rays.ray(column, row).direction, rays.ray(column + 1.0, row).direction);
 }
 
-// By some rows in the middle of the image.
+// From some rows in the middle of the image.
 double roughness_of(const std::vector<InversePlace>& places, int width_px) {
     const std::size_t eighth = places.size() / static_cast<std::size_t>(width_px) / 8;
     const auto row = [&](std::size_t n) {
@@ -76,7 +76,7 @@ struct ReliefWriter {
     const std::optional<Sled>& floor;
     NormalsFrom normals;
 
-    // Where the pixel's sight is so deep.
+    // The point on the pixel's line of sight at this depth.
     [[nodiscard]] Vector3d point_at(int column, int row, std::size_t pixel, double depth_m) const {
         if (!rays.has_port()) {
             const Eigen::Vector2d place = places[pixel].place.cast<double>();
@@ -85,7 +85,7 @@ struct ReliefWriter {
         const WaterRay ray = rays.ray(column + 0.5, row + 0.5);
         return point_on(ray, length_to(ray, depth_m, DepthIs::AlongAxis));
     }
-    // On the plane at the pixel's place, or where its own range is.
+    // On the plane at the pixel's place, or at its own range.
     void put(int column, int row, const LocalPlane& plane, Relief& relief) const {
         const std::size_t pixel = relief.at(column, row);
         const InversePlace& here = places[pixel];

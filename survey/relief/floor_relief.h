@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // An image's relief (light/relief.h) from its depth map (depth_map.h): points and normals of the
-// planes that touch it (local_planes.h). Where a range lies off its plane by more than kOffPlane of
-// the plane's own rms, the point is where the range has it.
+// tangent planes (local_planes.h). Where a range is off its plane by more than kOffPlane of the
+// plane's own rms, the point is taken from the range.
 //
 // Holes are filled by the planes around them, up to a thirtieth of the image's width; larger ones
-// by the plane of the navigation, where there is one, and stay unknown where there is none.
+// by the navigation's plane, or stay unknown without one.
 #pragma once
 
 #include "light/relief.h"
@@ -29,18 +29,18 @@ inline constexpr double kOffPlane = 4.0;
 enum class DepthIs { AlongAxis, AlongRay };
 enum class NormalsFrom { Depth, Floor };
 
-// A mesh of the floor, which gives each image its depth map by the navigation.
+// A mesh of the floor, which with the navigation gives each image its depth map.
 struct FloorMesh {
     std::shared_ptr<const ReliefScene> scene;
     ReliefAxes axes = ReliefAxes::EastNorthUp;
-    bool is_by_depth = false;  // cameras stand by the navigation's depth; else over the mesh
+    bool is_by_depth = false;  // cameras are placed by the navigation's depth; else above the mesh
 };
 
-// The depth maps of a survey: a folder with one an image, the file of the one image, or a mesh.
+// The depth maps of a survey: a folder with one per image, the file of a single image, or a mesh.
 struct DepthMaps {
     std::filesystem::path place{};
-    std::optional<FloorMesh> mesh{};  // whose file the place is
-    std::optional<double> unit_m{};   // none: as depth_map.h says
+    std::optional<FloorMesh> mesh{};  // read from `place`
+    std::optional<double> unit_m{};   // empty: as in depth_map.h
     DepthIs is = DepthIs::AlongAxis;
     NormalsFrom normals = NormalsFrom::Depth;
 };
@@ -53,8 +53,8 @@ struct FloorRelief {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const DepthMaps& maps);
 
-// The map is of the image's size. floor: the navigation's, for large holes, and for NormalsFrom's
-// Floor, which needs it. An InputError when nothing is known of any pixel.
+// The map has the image's size. floor: the navigation's, for large holes, and required for
+// NormalsFrom::Floor. An InputError if all pixels are unknown.
 [[nodiscard]] FloorRelief floor_relief(const DepthMap& map,
                                        DepthIs depth_is,
                                        NormalsFrom normals,

@@ -12,12 +12,12 @@ namespace aphotic {
 namespace {
 
 constexpr double kKnownShare = 0.25;
-// Of the rms of n independent residuals, in its own standard deviations 1/sqrt(2 n).
+// For the rms of n independent residuals, in its own standard deviations 1/sqrt(2 n).
 constexpr double kWorse = 4.0;
 constexpr double kConsistent = 3.0;  // a range's own residual, in rms
 
-// Sums over some pixels of their places (x, y, z = 1/Z). Of doubles: their variances are a
-// millionth of their squares at least.
+// Sums over some pixels of their places (x, y, z = 1/Z). In double, since variances may be as small
+// as a millionth of the squares.
 struct Moments {
     double count = 0.0;
     Eigen::Array3d first = Eigen::Array3d::Zero();
@@ -45,7 +45,7 @@ LocalPlane plane_through(const Moments& sums) {
     const Eigen::Array3d common =
         sums.products / sums.count -
         Eigen::Array3d(mean(1) * mean(2), mean(2) * mean(0), mean(0) * mean(1));
-    // One row or column of pixels has no slope across itself.
+    // A single row or column of pixels has no slope across itself.
     constexpr double kLeastSpread = 1e-6;
     const double determinant = variance(0) * variance(1) - common(2) * common(2);
     const double trace = variance(0) + variance(1);
@@ -104,7 +104,7 @@ const LocalPlanes::Window* LocalPlanes::window(int across, int down) const {
     return found.is_known ? &found : nullptr;
 }
 
-// Rounding of single precision is no roughness.
+// Single-precision rounding does not count as roughness.
 void LocalPlanes::judge(int across, int down) {
     constexpr double kRoundingOfFloats = 1e-6;
     Window& own = windows_[size_of(down) * size_of(across_) + size_of(across)];
@@ -143,7 +143,7 @@ std::optional<LocalPlane> LocalPlanes::between(int column, int row) const {
     return found;
 }
 
-// The best of the windows of 3 x 3 pixels that have this one; none where one is unknown.
+// The best of the windows of 3 x 3 pixels that contain this one; empty if none is fully known.
 std::optional<LocalPlane> LocalPlanes::finest(int column, int row) const {
     const int height_px = static_cast<int>(places_.size()) / width_px_;
     std::optional<LocalPlane> found;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The planes that touch a depth map. A plane n . P = h shows in every camera without a port as
+// Tangent planes of a depth map. In any camera without a port, a plane n . P = h appears as
 //
 //   1/Z = a + b x + c y,    (x, y) = (X, Y)/Z,    n = (b, c, a) / |(b, c, a)|
 //
-// linear in the place of the image, so a least-squares fit over a window is exact for any slope.
-// Windows are three blocks of block_px pixels each way. A pixel takes the planes of the four
-// windows about it, linearly by its place between their middles, unless one of these fits worse
-// than another beside it by more than chance, as on a step: then the plane of the best one up to
-// two blocks off goes on to it, or, of the least blocks, that of the best 3 x 3 pixels which have
-// it.
+// which is linear in the image coordinates, so a least-squares fit over a window is exact for any
+// slope. Windows are three blocks of block_px pixels each way. A pixel takes the planes of the four
+// windows around it, interpolated linearly by its place between their middles, unless one of these
+// fits worse than its neighbour by more than chance, as on a step: then the plane of the best
+// window up to two blocks off is extended to it, or, for the smallest blocks, that of the best
+// 3 x 3 pixels that contain it.
 //
 // Independent noise of sigma in Z tilts the plane of a window of m pixels a side by
 //
 //   sqrt(12) sigma / (m^2 p)  [rad],    p: a pixel on the floor  [m]
 //
-// and blocks are as large as keep that to kSlopeError, within a twelfth of the image's width.
+// and blocks are large enough to limit that to kSlopeError, within a twelfth of the image's width.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ struct LocalPlane {
         return abc(0) + abc(1) * static_cast<double>(place.x()) +
                abc(2) * static_cast<double>(place.y());
     }
-    // On the side of the camera.
+    // Towards the camera.
     [[nodiscard]] Eigen::Vector3d normal() const {
         return -Eigen::Vector3d(abc(1), abc(2), abc(0)).normalized();
     }
@@ -53,11 +53,11 @@ class LocalPlanes {
     // Rows of width_px pixels.
     LocalPlanes(const std::vector<InversePlace>& places, int width_px, int block_px);
 
-    // None where fewer than a quarter of every window near is known.
+    // Empty if less than a quarter of every window nearby is known.
     [[nodiscard]] std::optional<LocalPlane> at(int column, int row) const;
 
-    // The middle one of all windows' rms over 1/Z: the ranges' relative noise, or how rough the
-    // floor is.
+    // The median of all windows' rms over 1/Z: the ranges' relative noise, or the floor's
+    // roughness.
     [[nodiscard]] double roughness() const;
 
   private:
@@ -66,7 +66,7 @@ class LocalPlanes {
         double mean_per_m = 0.0;
         double count = 0.0;
         bool is_known = false;
-        bool is_good = false;  // beside its neighbours
+        bool is_good = false;  // compared with its neighbours
     };
     [[nodiscard]] const Window* window(int across, int down) const;
     void judge(int across, int down);
@@ -82,7 +82,7 @@ class LocalPlanes {
     std::vector<Window> windows_;  // by block
 };
 
-// Blocks for this roughness, of pixels of so many radians.
+// Blocks for this roughness, for pixels of this angular size.
 [[nodiscard]] int block_for(double roughness, double pixel_rad, int width_px);
 
 }  // namespace aphotic

@@ -39,7 +39,7 @@ constexpr std::array kPlyTypes{PlyType{"char", "int8", 1, number_at<std::int8_t,
 struct PlyProperty {
     std::string_view name;
     const PlyType* type;
-    const PlyType* count;  // of a list; else null
+    const PlyType* count;  // for a list; otherwise null
 };
 
 struct PlyElement {
@@ -167,7 +167,7 @@ class PlyReader {
              printable(in_->name));
     }
 
-    // use(property, value): of all properties of an element, lists aside; list(property, values).
+    // use(property, value): for all properties of an element except lists; list(property, values).
     template <typename Use, typename List>
     void each(const PlyElement& element, const Use& use, const List& list) {
         in_ = &element;
@@ -269,7 +269,7 @@ class PlyReader {
     bool is_ascii_ = false;
     std::vector<PlyElement> elements_{};
     const PlyElement* in_ = nullptr;
-    std::size_t place_ = 0;  // of what is being read, among its element's
+    std::size_t place_ = 0;  // of the current element among its kind
     Mesh mesh_{};
 };
 

@@ -6,7 +6,7 @@
 //   vertex   with x, y and z of any type of number, among others
 //   face     with the list vertex_indices or vertex_index; polygons are cut (mesh_reader.h)
 //
-// Other elements and properties are passed over.
+// Other elements and properties are skipped.
 #pragma once
 
 #include "rig/rig.h"
@@ -17,8 +17,8 @@
 
 namespace aphotic {
 
-// name stands in messages. An InputError when it is none, is cut short, or has no or more
-// triangles.
+// name is for messages. An InputError if it is not a PLY file, is truncated, or has no triangles or
+// too many.
 [[nodiscard]] Mesh parse_ply(const std::string& name,
                              std::string_view ply,
                              std::size_t most_triangles);

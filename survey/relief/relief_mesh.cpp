@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostReliefFile_bytes = 2048 * kMebibyte;
 
-// As many as all heights could make, whatever of them is known.
+// For the most that the heights could make, even if some are unknown.
 void require_room(const HeightGrid& grid) {
     const std::size_t triangles = 2 * size_of(grid.width) * size_of(grid.height);
     if (triangles <= kMostReliefTriangles) return;

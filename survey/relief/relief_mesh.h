@@ -6,8 +6,8 @@
 //   .obj   triangles (mesh_reader.h)
 //   .tif   heights on a grid (height_grid.h)  MB-System, GMT, QGIS
 //
-// A grid is two triangles to four samples that are known, x east, y north and z what the file
-// holds.
+// A grid gives two triangles for each four neighbouring samples that are known, with x east, y
+// north and the file's values as z.
 #pragma once
 
 #include "image/height_grid.h"

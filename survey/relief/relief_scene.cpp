@@ -18,7 +18,7 @@ Vector3d in_world(const Vector3d& vertex_m, ReliefAxes axes) {
     return {vertex_m.y(), vertex_m.x(), down};
 }
 
-// Of the vertices that triangles have.
+// Around the vertices used by triangles.
 Eigen::AlignedBox3d box_around(const Mesh& mesh, ReliefAxes axes) {
     Eigen::AlignedBox3d box;
     for (const auto& corners : mesh.triangles)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A survey's mesh (relief_mesh.h) as its cameras see it: the depth map of each, by one ray in water
-// a pixel. Here the world is x north, y east, z down [m], and a camera stands in it by its pupil
-// and the turn of its frame (rig/geometry.h), so that a point P of that frame is at
+// A survey's mesh (relief_mesh.h) as its cameras see it: the depth map of each, from one ray in
+// water per pixel. The world here is x north, y east, z down [m], and a camera is placed in it by
+// its pupil and the rotation of its frame (rig/geometry.h), so that a point P of that frame is at
 //
 //   pupil + turn P
 //
-// Vertices are floats about the middle of the mesh's box, 0.06 mm at 1 km, and all else is double.
+// Vertices are floats relative to the middle of the mesh's box, 0.06 mm at 1 km, and all else is
+// double.
 #pragma once
 
 #include "light/triangle_mesh.h"
@@ -23,8 +24,8 @@
 
 namespace aphotic {
 
-// What x, y and z of a mesh are: as of grids of heights and of projected meshes; of grids of
-// depths; or of meshes in the vehicle's world.
+// The axes of a mesh: those of grids of heights and of projected meshes; of grids of depths; or of
+// meshes in the vehicle's world.
 enum class ReliefAxes { EastNorthUp, EastNorthDown, NorthEastDown };
 inline constexpr std::array<std::string_view, 3> kReliefAxesWords{
     "east-north-up", "east-north-down", "north-east-down"};
@@ -34,7 +35,7 @@ struct CameraStation {
     Eigen::Matrix3d turn;
 };
 
-// Of a place of the image, as lightmap/relief_map.h has it.
+// For a place of the image, as in lightmap/relief_map.h.
 using PixelRay = std::function<WaterRay(double column, double row)>;
 
 class ReliefScene {
@@ -43,10 +44,10 @@ class ReliefScene {
 
     [[nodiscard]] const Eigen::AlignedBox3d& box_m() const { return box_m_; }
 
-    // z of the highest triangle there.
+    // z of the highest triangle at this place.
     [[nodiscard]] std::optional<double> floor_at(double north_m, double east_m) const;
 
-    // Along the axis; holes where a ray meets nothing.
+    // Along the axis; a hole where a ray meets nothing.
     [[nodiscard]] DepthMap depth_map(const CameraStation& camera,
                                      const PixelRay& ray,
                                      int width_px,
