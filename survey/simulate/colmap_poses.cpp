@@ -32,7 +32,7 @@ LensModel lens_of(const Camera& camera) {
     return pinhole;
 }
 
-// The model that has these coefficients and no other.
+// The model that has exactly these coefficients.
 ColmapCamera colmap_camera(const LensModel& lens) {
     const auto& k = lens.radial;
     const auto& q = lens.radial_below;

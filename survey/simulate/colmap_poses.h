@@ -7,12 +7,12 @@
 //
 // x_camera: X right, Y down, Z along the axis. X: the world of an image, x to starboard and y
 // forward along the level floor, z up, the origin where the camera's axis meets the floor [m]. A
-// scene that places its floor there, and is the same in all images, is thus one world that all of
-// them see; anything drawn anew for each image is a world of its own. Straight down q = (0, 1, 0,
-// 0), a half turn about x.
+// scene that places its floor there, and is the same in all images, is thus one world for all of
+// them; anything drawn anew for each image is a world of its own. Straight down q = (0, 1, 0, 0), a
+// half turn about x.
 //
 // The lens is COLMAP's with the same formula (rig/camera/lens_model.h). COLMAP has no port: behind
-// one the camera is the lens in air, as a comment states.
+// one the camera is the lens in air, as a comment in the file states.
 #pragma once
 
 #include "survey/simulate/flight.h"
@@ -23,8 +23,8 @@
 
 namespace aphotic {
 
-// An InputError for a lens that COLMAP has no model for, or for a name with a blank, which its text
-// cannot hold.
+// An InputError for a lens without a COLMAP model, or for a name with a blank, which its text
+// format cannot hold.
 void require_colmap(const Camera& camera, const std::vector<Leg>& legs);
 
 [[nodiscard]] std::string colmap_cameras(const Camera& camera);

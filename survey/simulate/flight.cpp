@@ -49,7 +49,7 @@ std::string quoted(const std::string& name) {
     return name.find_first_of(",# ") == std::string::npos ? name : '"' + name + '"';
 }
 
-// Ten digits show what is rounded to a step as that, and of any other pose a nanometre.
+// Ten digits reproduce numbers rounded to a step exactly, and any other pose to a nanometre.
 std::string pose_text(const Sled& sled) {
     return fmt::format(",{:.10g},{:.10g},{:.10g}\n",
                        sled.altitude_m,

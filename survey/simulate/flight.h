@@ -19,7 +19,7 @@
 
 namespace aphotic {
 
-// Least and greatest. By default HabCam's, whose tow holds its bow up by about 2 degrees.
+// Least and greatest. The defaults are HabCam's, whose tow holds its bow up by about 2 degrees.
 struct FlightRanges {
     std::array<double, 2> altitude_m{1.3, 3.2};
     std::array<double, 2> pitch_deg{-3.0, 7.0};
@@ -63,8 +63,8 @@ struct InstrumentErrors {
 // the mounting (vehicle_pose.h).
 [[nodiscard]] std::string navigation_text(const std::vector<Leg>& legs, const std::string& suffix);
 
-// The same without names, by the time at which each image was taken, in UTC: an image a second
-// from 2020-01-01 12:00:00 on.
+// The same without names, by the time of each image in UTC: one image per second from
+// 2020-01-01 12:00:00 on.
 [[nodiscard]] std::string timed_navigation_text(const std::vector<Leg>& legs);
 [[nodiscard]] double time_of(const Leg& leg);
 

@@ -17,8 +17,8 @@ std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31U);
 }
 
-// Of mean 0 and variance 1: the sum of four 16-bit numbers that are even from 0 to 1, whose
-// variance is 4/12. Nearly normal, and quickly made.
+// Of mean 0 and variance 1: the sum of four 16-bit numbers, uniform from 0 to 1, whose variance is
+// 4/12. Nearly normal, and fast.
 double corner(std::uint64_t seed, std::int64_t x, std::int64_t y) {
     const std::uint64_t bits =
         mixed(mixed(seed + static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15U) +
@@ -52,7 +52,7 @@ double FloorTexture::at(double x_m, double y_m) const {
     double scale_per_m = 1.0 / kCoarsest_m;
     for (std::uint64_t octave = 1; octave <= kOctaves; ++octave, scale_per_m *= 2.0) {
         const std::uint64_t seed = mixed(seed_ + octave);
-        // Else all grids would have a corner at the origin.
+        // Otherwise all grids would have a corner at the origin.
         const double shift = 0.37 * static_cast<double>(octave);
         const Blend x = blend_at(x_m * scale_per_m + shift);
         const Blend y = blend_at(y_m * scale_per_m + shift);

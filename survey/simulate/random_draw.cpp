@@ -7,7 +7,7 @@
 namespace aphotic {
 namespace {
 
-// log k!; from 10 up Stirling's series, whose first term left out is under 1e-10 of it.
+// log k!; from 10 up Stirling's series, whose first omitted term is under 1e-10 of it.
 double log_factorial(double k) {
     if (k < 10.0) {
         double product = 1.0;

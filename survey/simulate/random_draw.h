@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random numbers of simulated surveys: independent of the standard library, whose distributions
+// Random numbers for simulated surveys: independent of the standard library, whose distributions
+// vary.
 // vary.
 //
 //   normal     mean 0, variance 1; by Box and Muller
@@ -22,7 +23,7 @@ using RandomSource = std::mt19937_64;
 // can be made in any order.
 [[nodiscard]] RandomSource random_of(std::uint64_t seed, int image);
 
-// From 0 up to below 1.
+// From 0 to below 1.
 [[nodiscard]] double uniform(RandomSource& random);
 [[nodiscard]] double normal(RandomSource& random);
 

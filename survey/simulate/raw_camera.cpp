@@ -63,7 +63,7 @@ nlohmann::ordered_json to_json(const RawCamera& camera) {
 std::vector<std::uint16_t> raw_samples(const CameraImage& image,
                                        const RawCamera& camera,
                                        std::optional<NoiseOf> noise) {
-    // Of another word than the flight's.
+    // Seeded unlike the flight.
     RandomSource random =
         noise ? random_of(noise->seed + 0x9E3779B97F4A7C15U, noise->image) : RandomSource();
     const std::size_t pixels = image.samples.size() / kChannels;

@@ -55,7 +55,7 @@ void write_planes(const fs::path& file,
 std::vector<float> texture_of(const SimulatedSurvey& survey, const Leg& leg) {
     const Rig& rig = survey.rig;
     const Camera& camera = rig.camera;
-    // Another word than noise and flight have.
+    // Seeded unlike noise and flight.
     const FloorTexture texture(survey.texture,
                                random_of(survey.seed + 0xD1B54A32D192ED03U, leg.image)());
     const double middle_nm = 0.5 * (camera.range.first_nm + camera.range.last_nm);
@@ -105,7 +105,7 @@ void write_raw(const SimulatedSurvey& survey, const Leg& leg) {
                      .tags = tags_of(survey.camera.shot, exif_time(time_of(leg)))});
 }
 
-// work(leg) of those whose file is not there, some at a time.
+// work(leg) for the legs whose file is missing, some at a time.
 template <typename Work>
 void for_missing(const SimulatedSurvey& survey, const char* kind, const Work& work) {
     std::vector<const Leg*> missing;
@@ -121,13 +121,13 @@ void for_missing(const SimulatedSurvey& survey, const char* kind, const Work& wo
     });
 }
 
-// A folder holds one survey: images of two could not be told apart.
+// A folder holds one survey: images of two would be indistinguishable.
 void require_same(const SettingsJson& settings, const fs::path& notes) {
     const nlohmann::json read = parse_json(read_text_file(notes), notes.string());
     const nlohmann::json found =
         read.is_object() ? read.value("settings", nlohmann::json::object()) : nlohmann::json();
     for (const auto& [key, value] : settings.items()) {
-        // Without their keys' order.
+        // Ignores the keys' order.
         const nlohmann::json asked = nlohmann::json::parse(value.dump());
         const nlohmann::json there = found.is_object() ? found.value(key, nlohmann::json()) : found;
         if (asked == there) continue;
@@ -165,7 +165,7 @@ std::uint64_t missing_bytes(const SimulatedSurvey& survey) {
         return is_asked ? pixel_bytes * static_cast<std::uint64_t>(files) : 0;
     };
     const Camera& camera = survey.rig.camera;
-    // With a raw image go three floats of truth and one of texture.
+    // Each raw image comes with three floats of truth and one of texture.
     return (missing("raw", 18, true) + missing("depth", 4, survey.truth.depth) +
             missing("normals", 12, survey.truth.normals) +
             missing("reflectance", 12, survey.truth.reflectance)) *
