@@ -30,7 +30,7 @@ class BeamLight {
 
     // For directions of these lengths.
     [[nodiscard]] Lanes at(const LaneVector& towards, const Lanes& length) const;
-    // As if the edges that light the directions `from` were not there (continued_intensity()).
+    // As if the edges that light the directions `from` were absent (continued_intensity()).
     [[nodiscard]] Lanes continued(const LaneVector& towards,
                                   const Lanes& length,
                                   const LaneVector& from,
@@ -45,7 +45,7 @@ class BeamLight {
     Beam beam_;
     BeamFrame frame_;
     bool has_edge_;
-    std::optional<RoundProfile> profile_;  // of a beam that is round
+    std::optional<RoundProfile> profile_;  // of a round beam
     // For others, whose frame is rotated like the pattern.
     BeamFrame pattern_frame_;
     Beam in_air_;
@@ -61,7 +61,7 @@ class BeamEdges {
 
     [[nodiscard]] std::size_t count() const { return cosines_.size() + (has_rim_ ? 1 : 0); }
     [[nodiscard]] bool is_within(std::size_t edge, const Eigen::Vector3d& towards) const;
-    // What it may pass along.
+    // The creases that it may follow.
     [[nodiscard]] std::vector<Crease> creases(std::size_t edge) const;
 
   private:

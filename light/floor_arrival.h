@@ -58,8 +58,8 @@ struct FloorArrival {
     double path_m = 0.0;
 };
 
-// For a strobe as a point, whose beam has no edge between this ray and a place that it certainly
-// lights; nothing if the ray sees no floor, and no light from a lamp that is not above it.
+// For a strobe as a point, with no edge of its beam between this ray and lit_m, a place that it
+// certainly lights. Empty if the ray sees no floor; no light if the lamp is not above it.
 [[nodiscard]] std::optional<FloorArrival> arrival_of(const Rig& rig,
                                                      const Strobe& strobe,
                                                      const WaterRay& ray,

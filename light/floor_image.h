@@ -5,8 +5,8 @@
 //
 // Where no crease of a lamp's beam (beam_crease.h) enters a tile (tile_cone.h), the lamp's light is
 // smooth there, and a polynomial is accurate to kTileError of the lamps' signal. Lamps near one of
-// their creases, or whose light is too steep, go on to smaller tiles. The cost thus depends on how
-// smooth the light of the beam, lens and port is.
+// their creases, or whose light is too steep, are passed to smaller tiles. The cost thus depends on
+// the smoothness of the light of beam, lens and port.
 #pragma once
 
 #include "light/floor_light.h"

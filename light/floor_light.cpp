@@ -25,8 +25,7 @@ constexpr std::array<std::array<double, kIndexNodes>, kLooks - kIndexNodes> kHal
 
 constexpr double kLeastSquare = std::numeric_limits<double>::min();
 
-// As in clear water: of the light that matters to a signal, little is attenuated so much that it
-// needs more.
+// That of clear water: light attenuated so much that it needs more contributes little to a signal.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     constexpr double kMostLamps = 1e5;  // a map adds up the lamps at each pixel
     const LampGrid grid = lamp_grid(rig, strobe, 0.0);
@@ -62,7 +61,7 @@ void add_of_step(const std::vector<float>& table,
     });
 }
 
-// The same for any lanes, of which those without light or past the table's `steps` add nothing.
+// The same for any lanes; those without light or past the table's `steps` add nothing.
 void add_signals(const std::vector<float>& table,
                  double steps,
                  const Lanes& place,

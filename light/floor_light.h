@@ -17,8 +17,8 @@
 //
 //   doubt = max |G(n) - sum_j G(n_j) l_j(n)|
 //
-// shows where it is not smooth: a kink of the beam between two nodes shows there with at least a
-// third of its maximum. A ray that crosses a kink and returns does not show; unless the kink is
+// shows where it is not smooth: a kink of the beam between two nodes appears there with at least a
+// third of its maximum. A ray that crosses a kink and returns is not detected; unless the kink is
 // steep the effect is small, so steep ones are searched for explicitly (beam_crease.h), on the
 // parabola through the nodes. A place whose doubt exceeds kMostDoubt of its signal, or where a ray
 // crosses a steep kink, gets a ray for each wavelength,
@@ -27,8 +27,8 @@
 //
 // Places are computed in lanes (base/lanes.h).
 //
-// A beam's edge, which dispersion spreads over several pixels, is sharp and located by the middle
-// index.
+// A beam's edge, which dispersion spreads over several pixels, is treated as sharp and located by
+// the middle index.
 #pragma once
 
 #include "base/lanes.h"
@@ -55,7 +55,8 @@ namespace aphotic {
 
 inline constexpr double kMostDoubt = 1e-5;
 
-// The rays of a place at the index nodes, the middle one first; without a port only that one counts.
+// The rays of a place at the index nodes, the middle one first; without a port only that one is
+// used.
 using PlaceRays = std::array<FloorRay, kIndexNodes>;
 
 // Of kLanes places: the nodes' rays in the same order, then, if requested, those halfway between
@@ -166,7 +167,7 @@ class FloorLight {
         Lanes highlight;  // set where the floor has one
         Lanes place;      // of the path, in steps of the table
     };
-    // As if the edge that lights `from` were not there.
+    // As if the edge that lights `from` were absent.
     [[nodiscard]] LaneArrival arrive(const FloorLamp& lamp,
                                      const LaneRay& ray,
                                      const LaneArrival* from) const;

@@ -5,7 +5,7 @@
 //   L(n) = sum_j L(n_j) l_j(n),      l_j(n) = prod_{m != j} (n - n_m) / (n_j - n_m)
 //
 // n    the water's refractive index      n_j  both ends of its range, and its middle
-// l_j  Lagrange's polynomials: what light of node j's ray counts at another wavelength
+// l_j  Lagrange polynomials: the weight of node j's ray at another wavelength
 //
 // Accurate to third order in n where L is smooth. A kink of L lies somewhere between two nodes; a
 // caller that cannot rule one out checks halfway between nodes (light/floor_light.h).
@@ -22,7 +22,7 @@ namespace aphotic {
 
 inline constexpr std::size_t kIndexNodes = 3;
 
-// The wavelengths of so many nodes, from the range's first to its last.
+// The wavelengths of this many nodes, from the range's first to its last.
 [[nodiscard]] std::vector<double> index_nodes_nm(const Rig& rig, std::size_t nodes = kIndexNodes);
 
 // l_j at the water's index there.

@@ -50,7 +50,7 @@ double shortest_path_m(const Rig& rig, const Strobe& strobe, double lambda_nm) {
         .second;
 }
 
-// Where light that falls as exp(-K l) / l^3, which is no faster than any here, has fallen to
+// The path at which light that falls as exp(-K l) / l^3, no faster than any here, has fallen to
 // kDarkShare.
 double darkest_path_m(const Rig& rig, double shortest_m) {
     const double K_per_m = rig.water.least_attenuation_per_m();
@@ -138,7 +138,7 @@ PathRange floor_path_range(const Rig& rig) {
     if (paths.shortest_m == std::numeric_limits<double>::infinity()) return paths;
     paths.shortest_m = std::max(kLeastPath_m, paths.shortest_m / kPathRoom);
     paths.longest_m *= kPathRoom;
-    // No farther than light comes from, if the horizon is in view or nearly so.
+    // No farther than light can come from, if the horizon is in view or nearly so.
     const double darkest_m = darkest_path_m(rig, std::max(paths.shortest_m, first_lit_path_m(rig)));
     if (paths.has_horizon || darkest_m < paths.longest_m) paths.longest_m = darkest_m;
     return paths;

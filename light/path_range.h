@@ -15,8 +15,8 @@
 // Objects only widen this: a path via an object is no shorter than from the lamp straight to its
 // bounds and on to the camera, and no longer than via their farthest corners.
 //
-// With the horizon in view paths have no end, or almost none when it is close. The longest relevant
-// path is that beyond which no light above kDarkShare of the brightest can come.
+// With the horizon in view, paths are unbounded, or nearly so if it is close to the view. The
+// longest relevant path is that beyond which no light exceeds kDarkShare of the brightest.
 #pragma once
 
 #include "rig/rig.h"
@@ -31,7 +31,7 @@ inline constexpr double kDarkShare = 1e-11;
 struct PathRange {
     double shortest_m = 0.0;
     double longest_m = 0.0;
-    bool has_horizon = false;  // longest_m is where the light ends, not the floor
+    bool has_horizon = false;  // longest_m is the end of the light, not of the floor
 };
 
 // Both zero if the image sees no floor and no object.

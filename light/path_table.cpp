@@ -52,7 +52,7 @@ SpectralSum spectral_sum(const Water& water,
 }
 
 PathSteps path_steps(const SpectralSum& sum, const PathRange& paths, double error) {
-    // Scaled by the least loss, or nothing would remain of long paths.
+    // Scaled by the least loss, since long paths would otherwise underflow.
     const double K_0_per_m = sum.K_per_m.minCoeff();
     const Array3d total = moment(sum, paths.shortest_m, 0, K_0_per_m);
     const Array3d first = moment(sum, paths.shortest_m, 1, K_0_per_m);

@@ -9,8 +9,8 @@
 //
 // Between even steps of h the table is the cubic that matches T and T' at both ends. Its error is
 // at most h^4/384 of the fourth derivative, sum_j w_cj K_j^4 exp(-K_j l). While no w_cj is
-// negative, each derivative's ratio to T only falls as the path grows, since light that fades fast
-// goes first, and over a step T falls by no more than exp(h m_1). So everywhere
+// negative, each derivative's ratio to T only falls as the path grows, since the light that fades
+// fastest is lost first, and over a step T falls by no more than exp(h m_1). So everywhere
 //
 //   |error| / T  <=  h^4/384 m_4 exp(h m_1),        m_p = sum_j w_cj K_j^p e_j / sum_j w_cj e_j
 //

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNodesOfCubic = 4;
 
-// Lagrange's through 0, 1, 2, 3.
+// Lagrange's cubic through 0, 1, 2, 3.
 std::array<double, kNodesOfCubic> cubic_weights(double u) {
     const double a = u;
     const double b = u - 1.0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The sea floor as one image sees it, in place of a plane: the point that each pixel shows, and the
-// normal there, in the sled's frame (rig/geometry.h). Where nothing is known the point is NaN.
+// normal there, in the sled's frame (rig/geometry.h). Unknown points are NaN.
 //
-// The floor jumps between two pixels where the one lies off the plane through the other by more
-// than kReliefJump of its distance, or where one of them alone is known.
+// The floor jumps between two pixels if one lies off the plane through the other by more than
+// kReliefJump of its distance, or if only one of them is known.
 #pragma once
 
 #include "rig/geometry.h"
@@ -30,7 +30,7 @@ struct Relief {
                static_cast<std::size_t>(column);
     }
     [[nodiscard]] bool knows(std::size_t pixel) const { return std::isfinite(point_m[pixel].z()); }
-    // The plane that touches the floor at the point.
+    // The tangent plane at the point.
     [[nodiscard]] Plane plane(std::size_t pixel) const {
         return {.point_m = point_m[pixel].cast<double>(), .normal = normal[pixel].cast<double>()};
     }

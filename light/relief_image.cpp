@@ -44,7 +44,7 @@ struct Pixel {
 };
 
 // Calls look(pixels) for the vertices of each row of cells, then fill(cells) for each row, which
-// leaves the vertices as they are.
+// does not change the vertices.
 template <typename Look, typename Fill>
 void by_cells(const Relief& relief, int step_px, int threads, const Look& look, const Fill& fill) {
     const std::vector<int> columns = every(step_px, relief.width_px);
@@ -203,7 +203,8 @@ void ReliefPainter::look_at_lanes(std::span<const Pixel> pixels) {
     }
 }
 
-// Points and normals are interpolated from the corners', and the same lamps light all of them.
+// Whether points and normals agree with those interpolated from the corners, and the same lamps
+// light all of them.
 bool ReliefPainter::is_smooth(const Cell& cell) const {
     const std::array<std::size_t, 4> at = corners_of(cell, relief_);
     for (const std::size_t corner : at)
@@ -241,7 +242,7 @@ bool ReliefPainter::is_right(const Cell& cell, const Pixel& middle) {
     return true;
 }
 
-// A row of cells: pixels that must be looked at are gathered, for lanes.
+// A row of cells: pixels that must be computed are gathered into lanes.
 void ReliefPainter::fill(const std::vector<Cell>& cells) {
     const auto middle_of = [](const Cell& cell) {
         return Pixel{(cell.column + cell.right) / 2, (cell.row + cell.below) / 2};

@@ -5,9 +5,10 @@
 //
 // A lamp gives no light to a place that faces away from it, or from which the relief hides it
 // (relief_shadow.h). Shadows are traced at every nth pixel, as in the mesh, and at each pixel
-// between places that disagree. If the points and normals of a cell of kReliefCell_px are those of
-// its corners, interpolated, to kReliefOff of the distance, so is the light, provided that it is
-// accurate to kReliefError in the middle; elsewhere every pixel has its own sum.
+// between places that disagree. If the points and normals of a cell of kReliefCell_px agree with
+// those interpolated from its corners to kReliefOff of the distance, its light is interpolated as
+// well, provided that this is accurate to kReliefError in the middle; elsewhere every pixel has its
+// own sum.
 #pragma once
 
 #include "light/floor_light.h"
@@ -28,7 +29,7 @@ inline constexpr float kReliefOff = 2e-5F;
 inline constexpr float kReliefError = 5e-5F;
 
 struct ReliefLight {
-    std::vector<float> samples;  // R, G, B, one after another; 0 where nothing is known
+    std::vector<float> samples;  // R, G, B, one after another; 0 where unknown
     // By pixel: which lamps are hidden from it, and which of their beams' edges enclose it. Where
     // neighbours differ, an edge or a shadow's border passes between them.
     std::vector<std::uint32_t> seen;

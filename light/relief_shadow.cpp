@@ -9,7 +9,7 @@ namespace aphotic {
 
 namespace {
 
-// Of known places alone.
+// Between known places only.
 std::vector<std::array<unsigned, 3>> triangles_of(const Relief& relief,
                                                   const std::vector<int>& columns,
                                                   const std::vector<int>& rows) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the relief stands between a place of it and a lamp. The relief is a mesh through every
-// n-th of its pixels, n so that it is at most kShadowMesh_px wide; what is narrower casts no
-// shadow, and where the range jumps, the mesh is a wall down to what lies behind.
+// Whether the relief hides a lamp from one of its places. Its mesh has a vertex at every n-th
+// pixel, with n such that the mesh is at most kShadowMesh_px wide. Anything narrower casts no
+// shadow, and where the range jumps, the mesh is a wall down to the surface behind.
 //
 // A ray starts kShadowBias of the point's distance off the floor, along its normal and towards the
 // lamp, since measured ranges are rougher than the floor.
@@ -23,7 +23,7 @@ class ReliefShadow {
     // The relief must outlive it.
     explicit ReliefShadow(const Relief& relief);
 
-    // Between two vertices of the mesh.
+    // Between neighbouring vertices of the mesh.
     [[nodiscard]] int step_px() const { return step_px_; }
 
     [[nodiscard]] bool hides(std::size_t pixel, const Eigen::Vector3d& lamp_m) const;

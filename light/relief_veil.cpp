@@ -20,7 +20,7 @@ double steps_to(double depth_m) {
     return std::log(lit_m) / std::log1p(kVeilDepthStep);
 }
 
-// Of the cubic through -1, 0, 1 and 2.
+// Weights of the cubic through -1, 0, 1 and 2.
 std::array<double, kDepths> cubic_shares(double t) {
     return {-t * (t - 1.0) * (t - 2.0) / 6.0,
             (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
@@ -42,7 +42,7 @@ std::shared_ptr<const ReliefVeil::Level> ReliefVeil::level(int k) const {
     std::shared_ptr<const Level>& known = levels_[k];
     if (known) return known;
     const double depth_m = std::pow(1.0 + kVeilDepthStep, k);
-    // A floor with nothing below it: rays are requested as they are.
+    // A level floor that ends every ray at this depth.
     const Plane level{.point_m = {0.0, 0.0, depth_m}, .normal = -Eigen::Vector3d::UnitZ()};
     auto found = std::make_shared<Level>();
     VeilNodes nodes;

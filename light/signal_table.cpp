@@ -10,12 +10,12 @@
 namespace aphotic {
 namespace {
 
-// Shares of the requested error: the rest is dispersion's.
+// Shares of the requested error; the rest is for dispersion.
 constexpr double kGridShare = 0.1;
 constexpr double kTableShare = 0.5;
-// Light with a ray for each wavelength changes faster over them than light that keeps its path.
+// Light with a ray for each wavelength varies faster with wavelength than light on a fixed path.
 constexpr double kDispersedShare = 1e-4;
-// Lagrange's polynomials of three even points sum, in size, to 5/4 at most.
+// The absolute values of Lagrange polynomials through three even points sum to at most 5/4.
 constexpr double kLebesgue = 5.0 / 4.0;
 
 using Grid = std::vector<WeightedWavelength>;

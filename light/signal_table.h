@@ -20,17 +20,17 @@
 
 namespace aphotic {
 
-// Of one lamp spectrum.
+// For one lamp spectrum.
 struct LampSignal {
     std::vector<std::vector<float>> diffuse;    // by index node
-    std::vector<std::vector<float>> highlight;  // the same; none where the floor has no highlight
+    std::vector<std::vector<float>> highlight;  // the same; empty if the floor has no highlight
     SpectralSum dispersed_diffuse;              // by wavelength, behind a port
     SpectralSum dispersed_highlight;
 };
 
-// Rays at any index behind a port, interpolated from so many nodes: they move smoothly with the
-// index, but glass and water disperse light by different laws. Nine nodes are accurate to 1e-9 of a
-// slope, five to 1e-7.
+// The nodes from which rays behind a port are interpolated at any index: they vary smoothly with
+// the index, but glass and water disperse light by different laws. Nine nodes are accurate to 1e-9
+// of a slope, five to 1e-7.
 inline constexpr std::size_t kRayNodes = 9;
 
 struct SignalTable {
@@ -45,7 +45,7 @@ struct SignalTable {
 // error: relative, of the spectral integral and of the table. Without paths there is no light.
 [[nodiscard]] SignalTable signal_table(const Rig& rig, const PathRange& paths, double error);
 
-// The distinct lamp spectra, and which of them each strobe has.
+// The distinct lamp spectra, and the index of each strobe's.
 [[nodiscard]] std::vector<const Spectrum*> lamps_of(const Rig& rig,
                                                     std::vector<std::size_t>& by_strobe);
 

@@ -61,7 +61,7 @@ BeamTable with_steep_lines(const BeamTable& table) {
     steep.horizontal_rad =
         is_b ? steep_nodes(table.horizontal_rad, rows, most, of_h, even)
              : steep_nodes(table.horizontal_rad, rows, most, of_h, about_vertical);
-    // One column would be that of a round table.
+    // With a single column, the table would be round.
     if (steep.horizontal_rad.size() == 1) steep.horizontal_rad.push_back(steep.horizontal_rad[0]);
     return steep;
 }
@@ -92,7 +92,7 @@ std::vector<Crease> steep_creases(const Beam& beam, const BeamFrame& frame) {
 }
 
 bool crosses(const Crease& crease, const std::array<Eigen::Vector3d, 3>& towards) {
-    // How far the path may be from the parabola, as a share of its change.
+    // The largest deviation of the path from the parabola, as a share of its change.
     constexpr double kOff = 0.02;
     const auto height = [&](const Eigen::Vector3d& V) {
         if (!crease.is_quadratic) return crease.l.dot(V) / V.norm() - crease.at;

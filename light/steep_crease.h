@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The creases of a beam (rig/beam/beam_crease.h) at which its intensity bends so much that no
-// crossing by a dispersed ray may be missed: kinks at which the slope of I changes by more than
-// kSteepPerDegree of the largest I over a degree, and the ends of soft edges and blurs that are as
-// steep.
+// The creases of a beam (rig/beam/beam_crease.h) so steep that every crossing by a dispersed ray
+// must be found: kinks at which the slope of I changes by more than kSteepPerDegree of the largest
+// I over a degree, and the ends of equally steep soft edges and blurs.
 #pragma once
 
 #include "rig/beam/beam_crease.h"
@@ -18,8 +17,8 @@ namespace aphotic {
 inline constexpr double kSteepPerDegree = 0.1;
 [[nodiscard]] std::vector<Crease> steep_creases(const Beam& beam, const BeamFrame& frame);
 
-// Whether a direction crosses it on the way from the second of these to the third, along the
-// parabola through all three, of which the first is the middle. Directions are of any length but 0.
+// Whether a direction crosses it between the second and the third of these, along the parabola
+// through all three, of which the first is the middle. Directions are of any length but 0.
 [[nodiscard]] bool crosses(const Crease& crease, const std::array<Eigen::Vector3d, 3>& towards);
 
 }  // namespace aphotic

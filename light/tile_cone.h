@@ -32,10 +32,10 @@ struct TileCone {
 // For a lamp and the rays of a tile's places, the middle one's first.
 [[nodiscard]] TileCone tile_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
 
-// Whether a crease may enter the cone. False is certain.
+// Whether a crease may enter the cone; false is certain.
 [[nodiscard]] bool comes_into(const TileCone& cone, const Crease& crease);
 
-// The normals of the planes through the lamp and each ray are within a cone, too.
+// A cone about the normals of the planes through the lamp and each ray.
 [[nodiscard]] TileCone plane_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
 
 }  // namespace aphotic

@@ -65,7 +65,7 @@ TileAxis axis_of(int pixels) {
     return axis;
 }
 
-// a = C f along one way.
+// a = C f in one direction.
 TileNodes to_degrees() {
     TileNodes C;
     for (int k = 0; k <= kLast; ++k) {

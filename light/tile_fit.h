@@ -42,7 +42,7 @@ using TileNodes = Eigen::Matrix<double, kTilePoints, kTilePoints>;  // (row, col
 [[nodiscard]] double chebyshev_point(int i);
 [[nodiscard]] std::array<double, kTilePoints> chebyshev_shares(double x);
 
-// One side of a tile of so many pixels. Places are pixels from the first one's centre.
+// One side of a tile of this many pixels. Places are pixels from the first one's centre.
 struct TileAxis {
     std::array<double, kTilePoints> points_px{};
     std::array<double, kTileGaps> gaps_px{};  // their middles

@@ -2,28 +2,28 @@
 //
 // Light at every pixel of an image, at a cost that depends on how much of it is not smooth.
 //
-// The image is cut into square tiles. The parts of a tile's light that may be smooth are computed
-// at the points of tile_fit.h and interpolated, if they are right at the places between. The rest
-// goes on to the tile's four quarters, and at kDirectPixels is computed pixel by pixel. Tiles
-// depend only on the image: neither threads nor the requested rows change a bit.
+// The image is divided into square tiles. The parts of a tile's light that may be smooth are
+// computed at the points of tile_fit.h and interpolated, if they are accurate at the places
+// between. The rest is passed to the tile's four quarters, and at kDirectPixels is computed pixel
+// by pixel. Tiles depend only on the image: neither threads nor the requested rows change a bit.
 //
 // Users of this (floor_image.cpp, veil_map.cpp) supply a class, one object per thread, with
 //
-//   Piece, Group    of light: what may be smooth in one tile and not in another, and pieces that
-//                   are interpolated together
-//   Place, Found    what all pieces have in common at a place; a group's light there, `signals`
-//   kLanes          places that are asked for at a time
+//   Piece, Group    a part of the light that may be smooth in one tile and not in another; parts
+//                   that are interpolated together
+//   Place, Found    what all pieces share at a place; a group's light there, `signals`
+//   kLanes          places computed at a time
 //   planes()        of the image
-//   split(tile, pieces, rest)       groups that may be smooth in a tile; what is not goes on
+//   split(tile, pieces, rest)       groups that may be smooth in a tile; adds the others to rest
 //   all_of(pieces)                  one group
-//   give_back(group, rest)          a group that is not smooth goes on
+//   give_back(group, rest)          adds a group that is not smooth to rest
 //   place(at, is_exact)             of kLanes; is_exact: not points of polynomials
 //   find(group, place, is_exact)    Found of all these
-//   of_lane(found, k)               of one of them: `signals`, and what is asked for here
+//   of_lane(found, k)               of one of them: `signals`, and whatever these functions need
 //   is_within(found)                whether it may be interpolated
-//   beside(place, signals)          adds to a signal what is none of these pieces; of one lane
-//   is_right(found, check)          whether a polynomial is, at one place
-//   settle(group, column, row, place, signals, found)   the last word on a pixel
+//   beside(place, signals)          adds light that is not in any of these pieces; for one lane
+//   is_right(found, check)          whether a polynomial is accurate, at one place
+//   settle(group, column, row, place, signals, found)   the final value of a pixel
 #pragma once
 
 #include "base/parallel.h"
@@ -62,10 +62,10 @@ using PixelPlace = std::array<double, 2>;
 struct TileCheck {
     PlaceSignals interpolated{};
     PlaceSignals last_degrees{};  // tile_fit.h
-    PlaceSignals signals{};       // the whole there, as far as it is known
+    PlaceSignals signals{};       // the total there, as far as it is known
 };
 
-// The common case of most members.
+// Defaults of most members.
 struct TileLight {
     static constexpr std::size_t kLanes = 1;
     static const auto& of_lane(const auto& found, std::size_t /*k*/) { return found; }
@@ -137,7 +137,7 @@ class TilePainter {
 
     static constexpr std::size_t kLanes = Light::kLanes;
 
-    // Lanes of a tile's places from the first on, which at(k) gives in pixels from the tile's first
+    // Lanes of a tile's places from the first on, given by at(k) in pixels from the tile's first
     // centre; spare lanes repeat the last place.
     [[nodiscard]] typename Light::Place places_in(const Tile& tile,
                                                   std::size_t first,
@@ -271,7 +271,7 @@ class TilePainter {
     Tile whole_;
     ImageRows rows_;
     std::vector<TilePlane> planes_;
-    PlaceSignals so_far_{};  // of the pixel that is settled: zeroing it for each takes as long
+    PlaceSignals so_far_{};  // of the current pixel: zeroing it for each takes as long
 };
 
 // All pieces, with a thread for each of these lights.

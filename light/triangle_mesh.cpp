@@ -21,7 +21,7 @@ namespace {
 using Device = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
 
-// Of one thread: images are spread over threads, not their meshes.
+// Single-threaded: images are spread over threads, their meshes are not.
 const Device& device() {
     static const Device kDevice(rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
     if (!kDevice) throw RunError("cannot start Embree, which traces rays");
@@ -106,7 +106,7 @@ std::optional<double> TriangleMesh::first_hit(const Vector3d& from_m, const Vect
     const Vector3d normal = (scene_->vertices_m[b].cast<double>() - corner_m)
                                 .cross(scene_->vertices_m[c].cast<double>() - corner_m);
     const double times = normal.dot(corner_m - from_m) / normal.dot(way);
-    // Of a triangle that is seen from its edge Embree's own place is better than its plane's.
+    // For a triangle seen edge-on, Embree's own distance is more accurate than that to its plane.
     constexpr double kOfFloats = 1e-3;
     const double by_floats = found.ray.tfar;
     return std::abs(times - by_floats) <= kOfFloats * by_floats ? times : by_floats;

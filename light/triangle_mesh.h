@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Triangles that rays meet, by Embree (I. Wald et al., ACM Transactions on Graphics 33(4), 2014).
-// No ray slips between two that share an edge. Vertices are floats; where a ray meets the plane of
-// the triangle that it hits is computed in double.
+// Triangles intersected by rays, with Embree (I. Wald et al., ACM Transactions on Graphics 33(4),
+// 2014). No ray slips between two that share an edge. Vertices are floats; the intersection of a
+// ray with the plane of the triangle that it hits is computed in double.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,16 +16,16 @@ namespace aphotic {
 
 class TriangleMesh {
   public:
-    // Triangles by their vertices' places; those that they have are finite.
+    // Triangles by their vertices' indices; vertices in use must be finite.
     TriangleMesh(std::span<const Eigen::Vector3f> vertices_m,
                  std::span<const std::array<unsigned, 3>> triangles);
 
-    // Whether a triangle stands between from + least way and from + way.
+    // Whether a triangle lies between from + least way and from + way.
     [[nodiscard]] bool blocks(const Eigen::Vector3f& from_m,
                               const Eigen::Vector3f& way,
                               float least) const;
 
-    // How many times `way` the first triangle is off.
+    // The distance to the first triangle, in units of `way`.
     [[nodiscard]] std::optional<double> first_hit(const Eigen::Vector3d& from_m,
                                                   const Eigen::Vector3d& way) const;
 

@@ -73,7 +73,7 @@ void add_lamps_of(const Strobe& strobe, const BeamFrame& frame, const Rule& rule
     }
 }
 
-// About which a table's angles turn.
+// The pole of a table's angles.
 std::optional<Vector3d> pole_of(const Beam& beam, const BeamFrame& frame) {
     const auto* table = std::get_if<BeamTable>(&beam.pattern);
     if (table == nullptr) return std::nullopt;
@@ -127,7 +127,7 @@ double steepest_cone(const Beam& beam) {
     return steepest;
 }
 
-// How many of these suffice in a narrower panel, by rho^-2n.
+// The number of these that suffices in a narrower panel, by rho^-2n.
 std::size_t points_for(std::size_t points, double width, double room) {
     const double z = 1.0 + 2.0 * room / width;
     const double rho = z + std::sqrt(z * z - 1.0);

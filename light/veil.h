@@ -5,11 +5,11 @@
 //
 //   A(lambda) = Phi(lambda) sum_i b_i(lambda) int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt
 //
-// t         along the ray, from where it enters the water to what it meets      [m]
+// t         along the ray, from where it enters the water to its end                 [m]
 // d, w      from the lamp to that point of the ray: distance [m] and direction
-// psi       the angle by which light is turned there, kVeilCut or more: what is turned by less is
-//           seen beside its lamp, and left out
-// b_i, p_i  of each scatterer; K what light loses (spectral/water.h)
+// psi       the scattering angle there, kVeilCut or more: light scattered by less appears beside
+//           its lamp, and is omitted
+// b_i, p_i  of each scatterer; K: loss (spectral/water.h)
 // I         the beam's intensity (rig/beam/beam.h)                                   [1/sr]
 //
 // With h the lamp's distance from the ray, t_0 its foot point on it, and phi the angle at the lamp
@@ -20,21 +20,21 @@
 // so that the integrand is smooth, however close the lamp is to the ray, and the lamp's direction
 // is linear in cos(phi) and sin(phi): the points where a beam's edge or kink crosses the ray have a
 // closed form (rig/beam/beam_crease.h). Between these, the kinks of a tabulated phase function and
-// the cut, Gauss-Legendre's rule uses panels no wider than kVeilPanelRad, nor than their distance
-// from +-90 degrees, where scattered light has its poles: forward there (Henyey and Greenstein's
-// lies at -90 degrees +- i ln(1/g)), and exp(-K l) an essential one here. So the integrand is
-// analytic within the ellipse of Bernstein of rho = 3 + sqrt(8) about each panel, and n points err
-// by no more than
+// the cut, Gauss-Legendre quadrature uses panels no wider than kVeilPanelRad, nor than their
+// distance from +-90 degrees, where the integrand has its singularities: at -90 degrees those of
+// forward scattering (Henyey and Greenstein's poles are at -90 degrees +- i ln(1/g)), and at +90
+// degrees the essential one of exp(-K l). So the integrand is analytic within the Bernstein ellipse
+// of rho = 3 + sqrt(8) about each panel, and the error of n points is at most
 //
-//   64/15 M rho^-2n / (1 - rho^-2)       M: the largest there, of a panel of length 2
+//   64/15 M rho^-2n / (1 - rho^-2)       M: its largest value there, for a panel of length 2
 //
 // (Trefethen): 3e-12 M with 8 points. Narrower panels use as many points as keep rho^-2n. The
 // effect of M and of the few creases without a closed form is measured: veil_error(). The nodes do
 // not depend on wavelength: they serve every wavelength, and the signal as well, by a table over
-// the path's length.
+// the path length.
 //
-// An emitter with a size is 3 x 3 lamps by Gauss-Legendre's rule, more with more points. Shadows of
-// objects in the veil are omitted.
+// An emitter with a size is 3 x 3 lamps by Gauss-Legendre quadrature, more with more points.
+// Shadows of objects in the veil are omitted.
 #pragma once
 
 #include "rig/beam/beam_crease.h"
@@ -53,10 +53,10 @@ namespace aphotic {
 
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
-// Enough for images and maps: the error is 2e-6, unless light is lost within a panel, as in water
-// like milk. With this many or fewer, a round table is approximated by cubics that are off by at
-// most kVeilBeamOff of its brightest (rig/beam/table_pieces.h), so that panels do not end at each
-// of its rows.
+// Enough for images and maps: the error is 2e-6, unless light is lost within a panel, as in milky
+// water. With this many or fewer, a round table is approximated by cubics with an error of at most
+// kVeilBeamOff of its brightest (rig/beam/table_pieces.h), so that panels need not end at each of
+// its rows.
 inline constexpr unsigned kVeilMapPoints = 3;
 inline constexpr double kVeilBeamOff = 1e-4;
 // Light attenuated below e^-kVeilDepth is omitted.
@@ -67,7 +67,7 @@ inline constexpr double kVeilDepth = 40.0;
 struct VeilNodes {
     std::vector<double> path_m;                 // t + d
     std::vector<std::vector<double>> weight{};  // by scatterer  [1/(m sr)]
-    std::vector<double> cuts_rad{};             // room for Veil
+    std::vector<double> cuts_rad{};             // workspace of Veil
 
     void clear();
 };
@@ -80,8 +80,8 @@ class Veil {
     // Over the whole length of the ray, which may be infinite; replaces the nodes. Thread-safe.
     void nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
 
-    // The same for a part: each cone of a beam is one, and so is any other beam. Where one has an
-    // edge the others are smooth.
+    // The same for a part: each cone of a beam is one, and so is any other beam. Where one part has
+    // an edge, the others are smooth.
     void nodes_of_part(std::size_t part,
                        const WaterRay& ray,
                        double length_m,
@@ -104,9 +104,9 @@ class Veil {
         std::vector<TablePiece> pieces;  // of a round table without a window, of a flux of 1
         std::vector<Lamp> lamps;
         double widest_panel_rad;
-        bool ends_in_a_power;  // at 90 degrees: a cosine's, not a whole one, or a window's
-        bool is_of_optics;     // whose creases all are of power 3/2
-        std::optional<Eigen::Vector3d> pole;  // about which a table's angles turn
+        bool ends_in_a_power;  // at 90 degrees: a cosine's fractional one, or a window's
+        bool is_of_optics;     // all its creases have the power 3/2
+        std::optional<Eigen::Vector3d> pole;  // of a table's angles
     };
     // p at even steps from kVeilCut to pi, if its formula is slow.
     struct Phase {
@@ -164,7 +164,7 @@ class Veil {
     std::vector<Phase> phases_;         // by scatterer
     std::vector<double> kinks_rad_;     // of all phase functions, as phi, ascending
     std::vector<KinkPanel> panels_;     // by the kink where they begin
-    double longest_m_ = 0.0;            // path beyond which no light is left
+    double longest_m_ = 0.0;            // path beyond which no light remains
     std::vector<Rule> rules_;           // by number of points
 };
 

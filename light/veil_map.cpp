@@ -25,7 +25,7 @@ constexpr double kVeilTableShare = 0.5;
 constexpr double kOffBetween = 0.1;
 constexpr double kLastDegrees = 0.3;
 
-// The wavelengths that are scattered.
+// Over the wavelengths that are scattered.
 double least_loss_per_m(const Rig& rig) {
     double least = std::numeric_limits<double>::infinity();
     for (const double nm : union_of_knots(rig.water.curves(), rig.camera.range)) {
@@ -52,7 +52,7 @@ PathRange veil_paths(const Rig& rig, const PathRange& direct) {
     }
     const double dark_m = kVeilDepth / least_per_m;
     if (direct.has_horizon || direct.longest_m == 0.0) paths.longest_m = dark_m;
-    // However deep the black water: a table to that depth only.
+    // However long the paths, the table ends where the light is lost.
     paths.longest_m = std::clamp(
         paths.longest_m, paths.shortest_m + std::min(kSome_m, dark_m), paths.shortest_m + dark_m);
     return paths;
@@ -164,7 +164,7 @@ void VeilMap::add(const VeilNodes& nodes, std::size_t strobe, std::size_t ray, S
     std::array<std::array<float, kTableLanes>, kVeilPlanes / kChannels> lanes{};
     for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
         const double place = (nodes.path_m[n] - steps_.first_m) * steps_.steps_per_m;
-        // Rounding may leave the range slightly. Past the horizon's end nothing is left.
+        // Rounding may leave the range slightly. Beyond the horizon's end no light remains.
         if (place > steps_.count + 0.01) continue;
         const int step = std::clamp(static_cast<int>(place), 0, steps_.count - 1);
         const auto t = static_cast<float>(place - step);

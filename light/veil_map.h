@@ -9,17 +9,18 @@
 // s, i  strobe and scatterer          f_s, Phi_s  its lamp spectrum and power
 // Q_c   response of channel c         K, b_i      spectral/water.h
 //
-// T is tabulated once per water as the floor's is (path_table.h), for paths from the lamp straight
-// to the camera to the longest that the floor's direct light takes, or where less than
-// e^-kVeilDepth is left.
+// T is tabulated once per water as the floor's is (path_table.h), for paths from the direct one
+// between lamp and camera to the longest of the floor's direct light, or to where less than
+// e^-kVeilDepth remains.
 //
 // Over an image the veil is painted by tiles (tile_image.h) of kVeilTile_px, each part of a beam
-// (light/veil.h) by itself, for edges of one are none of the others'. It is smooth but where the
-// sight touches a beam's edge in the water or meets it on the floor. A polynomial is right that at
-// each place between is off by a tenth of the tolerance of the signal, floor's light and veil, if
-// its last degrees are small, too (tile_fit.h). So that no light slips through between a tile's
-// places, neither the planes of lamp and sights nor the lamp's ways to their ends turn by more over
-// it than twice the width of the narrowest (beam_width.h); near the lamp planes turn about it.
+// (light/veil.h) separately, since an edge belongs to one part only. It is smooth except where the
+// line of sight touches a beam's edge in the water or meets it on the floor. A polynomial is
+// accepted if at each place between its points its error is at most a tenth of the tolerance
+// relative to the signal, floor's light and veil, and if its last degrees are small, too
+// (tile_fit.h). So that no light is missed between a tile's places, neither the planes of lamp and
+// sights nor the directions from the lamp to their ends turn over it by more than twice the width
+// of the narrowest (beam_width.h); near the lamp, planes turn about it.
 //
 // Behind a port the veil is that of a few rays, interpolated over the water's index
 // (light/index_nodes.h).
@@ -54,7 +55,7 @@ class VeilMap {
   public:
     // For water that scatters. direct: the floor light's. error: relative, of the spectral integral
     // and its table. points: per panel (light/veil.h). The planes are R, G and B, followed by A of
-    // light/veil.h at wavelengths, which share their nodes: none behind a port, where each has its
+    // light/veil.h at wavelengths that share their nodes: none behind a port, where each has its
     // own ray. Without signals, only A, along rays of one wavelength.
     VeilMap(const Rig& rig,
             const PathRange& direct,
@@ -88,8 +89,8 @@ class VeilMap {
 
     Rig rig_;
     Veil veil_;
-    std::vector<double> widest_rad_;      // by part: that a tile may turn
-    std::vector<double> index_nodes_nm_;  // whose rays are taken, in the order of PlaceRays
+    std::vector<double> widest_rad_;      // by part: the largest turn over a tile
+    std::vector<double> index_nodes_nm_;  // of the rays used, in the order of PlaceRays
     std::size_t planes_ = 0;
     std::vector<VeilGrid> grids_;  // each of three planes
     PathSteps steps_;
