@@ -78,7 +78,7 @@ AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
     struct Line {
         double a;  // of exp(b (h - at))
         double c;
-        double squares;  // that it leaves, less the squares of the signal
+        double squares;  // squared residuals, less the squares of the signal
     };
     const auto line_over = [&](const Rate& rate) {
         const double part = product(rate.shape, signal);

@@ -8,14 +8,14 @@
 //
 // by least squares with a >= 0, b <= 0, 0 <= c <= the least S, since a corrector divides by the
 // fit, which must not cross zero. For a given b the problem is a straight line over exp(b h): c is
-// cut to its range and a follows, which is exact, since the squares are convex. So only b is
+// clipped to its range and a follows, which is exact, since the squares are convex. So only b is
 // searched: first over kRates rates, in even ratios from kSlowest to kFastest over the span of
 // altitudes, but no faster than kMostExponent over the last altitude, beyond which a and exp(b h)
 // would no longer be floats; then by golden section between the neighbours of the best. The result
 // is the best of all rates, unless the residual has several minima between two rates. Light that
 // increases with altitude is fitted by its mean, at b = 0.
 //
-// residual  root of the mean square of what the fit leaves, over the mean of S
+// residual  rms of the residuals over the mean of S
 #pragma once
 
 #include <array>

@@ -40,8 +40,8 @@ void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
 
 }  // namespace
 
-// Pixels of the image, and the one after each row and column, so that neighbours in two tiles are
-// compared in one.
+// Pixels of the image, and one more row and column, so that neighbours in two tiles are compared in
+// one.
 struct ConeEdges::Tile {
     int column;
     int row;

@@ -25,7 +25,7 @@ constexpr double kForbidden = -1e3;    // below every value of an allowed place
 constexpr double kPenalty = 20.0;
 constexpr std::size_t kCandidatesOfRoom = 12;  // to be judged
 constexpr std::size_t kFewHold = 8;            // of which this many are enough
-// Small images and large ones differ by about this much: a figure only just kept on one may not be
+// Small and large images differ by about this much: a figure only just kept on one may not be kept
 // on the other.
 constexpr double kRoomToJudge = 1.003;
 constexpr std::size_t kMostOnFront = 9;
@@ -262,7 +262,7 @@ class DesignSearch {
     std::uint64_t searches_ = 0;
 };
 
-// The result that a user gets.
+// Judges designs as the user gets them.
 class DesignJudge {
   public:
     DesignJudge(const DesignSpace& space, const DesignRequest& request)

@@ -21,11 +21,11 @@
 // best of the search's candidates by that judgement is the design; if none is better than the start
 // and keeps the required figures, it is the start: a design is never worse than its start.
 //
-// The front is the trade of evenness against signal: designs that no other beats in both, and that
-// keep the coverage.
+// The front is the trade-off of evenness against signal: designs that no other beats in both, and
+// that keep the coverage.
 //
 // Limits: a search does not prove that nothing is better; between the poses judged, figures may be
-// worse than at them. The same request gives the same answer, whatever the number of threads.
+// worse than at them. The same request gives the same result, whatever the number of threads.
 #pragma once
 
 #include "lightmap/design_space.h"
@@ -71,7 +71,7 @@ struct DesignRequest {
     int evaluations = 10000;
     std::uint64_t seed = 1;
     int threads = 1;
-    std::function<void(int done, int of_all)> progress{};  // may be none
+    std::function<void(int done, int of_all)> progress{};  // may be empty
 };
 
 // As judged.
@@ -93,7 +93,7 @@ struct DesignResult {
     bool is_better = false;
     std::vector<Design> front{};  // by signal, the least first
     int evaluations = 0;
-    std::size_t numbers = 0;  // that were free
+    std::size_t numbers = 0;  // free ones
 };
 
 // For a rig with the bare floor. Throws InputError if the start is not allowed, or leaves pixels

@@ -39,7 +39,7 @@ DesignJson numbers_of(const Rig& rig, const Design& design, const LightFigures& 
                                    {"position_m", {position_m.x(), position_m.y(), position_m.z()}},
                                    {"direction", {axis.x(), axis.y(), axis.z()}},
                                    {"power_of_start", power / rig.strobes[s].power}});
-        // A strobe may have none, at the start and since.
+        // A strobe may have no power, at the start and afterwards.
         if (rig.strobes[s].power == 0.0) json["strobes"].back()["power_of_start"] = nullptr;
     }
     for (const auto& [sled, figures] : design.poses) {

@@ -70,7 +70,7 @@ PageTable figures(const DesignRequest& request, const DesignResult& result) {
     return table;
 }
 
-// Bright pixels over the mean in steps of a tenth, whose borders are contours: for the least even
+// Brightness over the mean in steps of a tenth, whose borders are contours, for the least even
 // channel.
 std::string steps_png(const Lightmap& map) {
     constexpr double kSteps = 10.0;   // of the mean
@@ -227,7 +227,7 @@ struct SledView {
     Eigen::Vector3d down;
 };
 
-// A drawing to scale of what is added to it.
+// A drawing, to scale, of the elements added to it.
 class SledDrawing {
   public:
     SledDrawing(const SledView& view, const Points& shown) : view_(view) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A design as one page: what is gained, the light on the floor before and after, the trade of
-// evenness against signal, where the strobes went, and the figures of every pose.
+// A design as one page: the gain, the light on the floor before and after, the trade-off of
+// evenness against signal, the new places of the strobes, and the figures of every pose.
 #pragma once
 
 #include "lightmap/design.h"

@@ -64,7 +64,7 @@ double tilt_rad_of(const Vector3d& axis) {
     return std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
 }
 
-// Towards the camera's axis; straight down or up on it.
+// Towards the camera's axis; straight down or up if on it.
 Vector3d aimed(double tilt_rad, const Vector3d& position_m) {
     const Vector3d inward(-position_m.x(), -position_m.y(), 0.0);
     if (inward.norm() == 0.0) return {0.0, 0.0, tilt_rad < 1.0 ? 1.0 : -1.0};
@@ -102,7 +102,7 @@ std::vector<double> numbers_of(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-// Times the power or flux of the rig, in the same key.
+// Multiplies the power or flux of the rig, in the same key.
 void brighten(RigText& text, const std::string& strobe, double factor) {
     static constexpr std::array kPowers{"luminous_flux_lm", "radiant_flux_w", "energy_j", "power"};
     const auto* said =
@@ -390,7 +390,7 @@ PathRange DesignSpace::paths() const {
             cornered.strobes.push_back(strobe);
         }
     }
-    // The longest is at a corner. The shortest is no shorter than straight down and up.
+    // The longest is at a corner. The shortest is at least the way straight down and up.
     PathRange all = paths_of(cornered, poses_);
     all.shortest_m = std::numeric_limits<double>::infinity();
     for (const Sled& pose : poses_) {

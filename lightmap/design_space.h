@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which strobes of a rig may be where: the free keys and their boxes, as a unit cube to search.
+// Where the strobes of a rig may be: the free keys and their boxes, as a unit cube to search.
 //
 //   strobe.NAME.position_m     the position, within a box about it
-//   strobe.NAME.aim            where it points, within an angle of where it does
+//   strobe.NAME.aim            the direction, within an angle of the original one
 //   strobe.NAME.aim.tilt_deg   its tilt alone, of an aim = { tilt_deg = ..., toward = "axis" }
-//   strobe.NAME.power          its share of the flux that the strobes of free power have together
+//   strobe.NAME.power          its share of the total flux of the strobes with free power
 //
 // NAME may be * for every strobe. An aim turns by two angles a and b of its own, each within t:
 //
@@ -15,11 +15,12 @@
 // no pole. A strobe whose rig aims it towards the camera's axis keeps pointing there as it moves,
 // since its aim is relative.
 //
-// Powers share their initial flux (power times the integral of the lamp's table): light is moved,
-// not added. None falls below kLeastFluxShare of the strongest, or its own share of it.
+// Powers share their initial flux (power times the integral of the lamp's table): light is
+// redistributed, not added. None falls below kLeastFluxShare of the strongest, or its own share of
+// it.
 //
-// Allowed is a place where every lamp is above the floor by at least kRoomOverFloor of the
-// altitude, in every pose, and outside the camera's view, enlarged kRoomAboutView times each way.
+// A place is allowed if every lamp is above the floor by at least kRoomOverFloor of the altitude,
+// in every pose, and outside the camera's view, enlarged kRoomAboutView times each way.
 #pragma once
 
 #include "light/path_range.h"
@@ -49,8 +50,8 @@ struct DesignFreedom {
 
 class DesignSpace {
   public:
-    // Throws InputError, which names the key or box, for anything that the rig does not have or
-    // cannot have.
+    // An InputError, which names the key or box, for anything that the rig does not have or cannot
+    // have.
     DesignSpace(const RigText& text, const DesignFreedom& freedom, std::vector<Sled> poses);
 
     // The free numbers, each from 0 to 1.
@@ -60,7 +61,7 @@ class DesignSpace {
     // By strobe, including those that are not free.
     [[nodiscard]] std::vector<StrobePlace> places_at(std::span<const double> point) const;
     [[nodiscard]] bool allows(const std::vector<StrobePlace>& places) const;
-    // The reason in words, for people; empty: allowed.
+    // The reason, for messages; empty: allowed.
     [[nodiscard]] std::string why_not(const std::vector<StrobePlace>& places) const;
 
     // The rig's text with the strobes there. Numbers are rounded: to a number of decimals for
@@ -71,7 +72,7 @@ class DesignSpace {
     static constexpr int kDigitsOfPower = 5;
     [[nodiscard]] RigText text_at(std::span<const double> point) const;
 
-    // All paths that may be seen from anywhere in the space, in any pose.
+    // All paths that can be seen from anywhere in the space, in any pose.
     [[nodiscard]] PathRange paths() const;
 
     [[nodiscard]] const std::vector<Sled>& poses() const { return poses_; }

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The quality of an image's light, in figures that a designer can compare.
+// Figures of the quality of an image's light, for comparing designs.
 //
-//   evenness        U0 = least / mean      of the floor's light over the image; what lighting
-//                                          standards call overall uniformity (CIE, IES)
+//   evenness        U0 = least / mean      of the floor's light over the image; called overall
+//                                          uniformity in lighting standards (CIE, IES)
 //   diversity       Ud = least / most      the same, against the brightest pixel
-//   coverage        share of the pixels whose floor's light is at least `level` of the brightest's
+//   coverage        share of the pixels whose floor light is at least `level` of the brightest's
 //   signal to noise least of g / sqrt(g + v)
 //
-// g  the floor's light at a pixel, vignetting included: what the camera gets of it
-// v  the veil's: what the water scatters into the view
+// g  the floor's light at a pixel as the camera receives it, vignetting included
+// v  the veil's: light that the water scatters into the view
 //
-// The noise is only the photons', whose variance is their number; veil adds noise and no
-// information, so the ratio goes with the root of the light. It is in units of the root of the
+// The noise is only that of photons, whose variance is their number; the veil adds noise and no
+// information, so the ratio scales with the root of the light. It is in units of the root of the
 // signal's, and meaningful only relative to another of the same camera. Read noise is omitted.
 //
-// For an image: the worst of its channels. A channel that sees no light at all is ignored; if none
-// sees any, all figures are 0. In even light U0, Ud and coverage are 1. Under one isotropic lamp
-// beside the pupil at height h in clear water, light falls as cos^3(theta): Ud is cos^3 of the
+// For an image, each figure is that of its worst channel. A channel without any light is ignored;
+// if none has any, all figures are 0. In even light U0, Ud and coverage are 1. Under one isotropic
+// lamp beside the pupil at height h in clear water, light falls as cos^3(theta): Ud is cos^3 of the
 // corners'.
 #pragma once
 

@@ -77,7 +77,7 @@ void require_float_scale(const Rig& rig) {
     }
 }
 
-// Light that has gone from the shortest path to the longest, and spread as much, is almost gone.
+// Whether light is almost gone from the shortest path to the longest, by loss and by spreading.
 bool ends_in_darkness(const Water& water, const PathRange& paths) {
     const double K_per_m = water.least_attenuation_per_m();
     constexpr double kRounding = 1.1;
@@ -151,7 +151,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     require_float_scale(rig);
     direct_ = paths ? *paths : path_range(rig);
     paths_ = direct_;
-    // The rig's own end where the floor ends, or else where its light ends.
+    // The rig's own paths end where the floor ends, or where its light ends.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
     table_ = signal_table(rig_, paths_, options_.error);

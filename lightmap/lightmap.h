@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The signal of the rig's camera on its bare flat floor, at the camera's pace:
-// light/floor_light.h's sum at every pixel, by tiles of the image (light/floor_image.h). Once per
-// water the signal over path length is tabulated (light/signal_table.h); a map for any altitude and
+// The signal of the rig's camera on its bare flat floor, at the camera's frame rate:
+// light/floor_light.h's sum at every pixel, by tiles of the image (light/floor_image.h). The signal
+// over path length is tabulated once per water (light/signal_table.h); a map for any altitude and
 // attitude is then geometry and table look-ups at few places where the light is smooth, with a
 // polynomial between them.
 //
@@ -50,7 +50,7 @@ struct MapPromise {
     // Behind a port the interpolation over the index is measured and has no bound, nor has that of
     // a veil.
     bool is_bounded = true;
-    bool has_veil = false;  // it is of the sum
+    bool has_veil = false;  // the error is that of the sum
     // Emitters with a size are their grids of lamps, and penumbrae have as many steps.
     bool is_of_lamp_grids = false;
 };
@@ -75,7 +75,7 @@ struct Lightmap {
 
 [[nodiscard]] VeilShare veil_share_of(const Lightmap& map);
 
-// What may change in a strobe without changing its light.
+// The properties of a strobe that can change while its lamps and the tables stay.
 struct StrobePlace {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector
@@ -84,13 +84,13 @@ struct StrobePlace {
 
 class LightmapMaker {
   public:
-    // paths: the range that the tables must cover; empty: those of the rig's own sled. Throws
+    // paths: the range that the tables must cover; empty: those of the rig's own sled. An
     // InputError for a rig with objects or a user's scene, since the map shows the bare floor.
     LightmapMaker(const Rig& rig,
                   const std::optional<PathRange>& paths,
                   const LightmapOptions& options);
 
-    // Throws InputError if this sled sees paths outside the tables' range, or puts a lamp below the
+    // An InputError if this sled sees paths outside the tables' range, or puts a lamp below the
     // floor.
     [[nodiscard]] Lightmap map(const Sled& sled) const;
     // The same into an existing map: without allocation if it has the size.
@@ -99,7 +99,7 @@ class LightmapMaker {
     void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
 
     // For each pixel a number that identifies the edges of lamps' beams that enclose it: where two
-    // maps have the same, no edge lies between.
+    // maps have equal numbers, no edge lies between them.
     [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
     // Moves, turns and dims the strobes for all later maps; their lamps and the tables stay.

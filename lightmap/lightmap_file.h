@@ -43,7 +43,7 @@ struct WrittenLightmap {
 // Maps with such names, from an earlier run.
 void remove_maps(const std::filesystem::path& folder);
 
-// Throws InputError where LightmapMaker does.
+// An InputError where LightmapMaker throws one.
 [[nodiscard]] WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request);
 
 }  // namespace aphotic

@@ -60,7 +60,7 @@ void maximise(SearchWay way,
     if (way == SearchWay::Local) nlopt_set_initial_step1(search.get(), effort.first_step);
     std::vector<double> point = start;
     double best = 0.0;
-    // Its answer is one of the points that value() saw, and why it ended does not matter.
+    // The result is one of the points that value() saw, and the reason for ending does not matter.
     (void)nlopt_optimize(search.get(), point.data(), &best);
     if (asked.fault) std::rethrow_exception(asked.fault);
 }

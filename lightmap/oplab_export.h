@@ -50,7 +50,7 @@ struct ExportedOplab {
     double share_off = 0.0;
 };
 
-// The folder exists; nothing of an earlier run is left in it.
+// The folder must exist; files of an earlier run are removed.
 ExportedOplab export_oplab(const std::filesystem::path& folder,
                            const Rig& rig,
                            const AltitudeExport& request);

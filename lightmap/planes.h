@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A map in parts, for people who place strobes: the light of a single strobe, or of one of its
-// cones. Light adds up, so a part is the map of a rig that has nothing else, and the parts' sum is
-// the map.
+// A map in parts, for placing strobes: the light of a single strobe, or of one of its cones. Light
+// adds up, so a part is the map of a rig that has nothing else, and the parts' sum is the map.
 //
 // A part's planes are named like OpenEXR layers: fore.R, or fore.collimated.R; its veil's
 // fore.veil.R.

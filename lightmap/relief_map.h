@@ -17,8 +17,8 @@ namespace aphotic {
 
 struct ReliefMap {
     Lightmap map;
-    // 1 for every pixel within so many pixels of an edge of a beam, a shadow's border, or a jump of
-    // the range.
+    // 1 for every pixel within within_px pixels of an edge of a beam, a shadow's border, or a jump
+    // of the range.
     std::vector<std::uint8_t> edges;
 };
 
