@@ -37,7 +37,7 @@ struct WrittenLightmap {
     double map_s = 0.0;
 };
 
-// Of maps by altitude in one folder, such as altitude_2.10m.exr: two decimals, or as many as
+// Names of maps by altitude in one folder, such as altitude_2.10m.exr: two decimals, or as many as
 // distinguish the altitudes.
 [[nodiscard]] std::vector<std::string> map_names(const std::vector<double>& altitude_m);
 // Maps with such names, from an earlier run.

@@ -46,7 +46,7 @@ class Fitter {
           fits_{.parameters = std::vector<float>(kParts * samples),
                 .residuals = std::vector<Residual>(samples)} {}
 
-    // Of the sample's light at every altitude.
+    // Fits the sample's light at every altitude.
     void fit(std::size_t sample, const std::vector<double>& signal) {
         AltitudeFit fit = fitter_.fit(signal);
         if (fit.a == 0.0 && fit.c == 0.0) fit = {.a = 1.0};

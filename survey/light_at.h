@@ -77,11 +77,11 @@ void require_light_for(const RawImage& raw, const LightAt& light);
                                    bool has_veil = true,
                                    std::optional<PlaneSize> images = std::nullopt);
 
-// Of the rig's floor: the share of the lamps' own light, without water, that it returns to each
-// channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
+// The share of the lamps' own light, without water, that the rig's floor returns to each channel:
+//   int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
 [[nodiscard]] PerChannel floor_colour(const Rig& rig);
 
-// Of the rig's camera, in the light of its lamps after the path to the floor and back at the rig's
+// For the rig's camera, in the light of its lamps after the path to the floor and back at the rig's
 // own altitude.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Rig& rig);
 

@@ -98,7 +98,7 @@ void AltitudeExponential::end() {
     spread_ = RunningMean(0);
     mean_ = observed.average;
     common_mean_ = mean_of(mean_);
-    // The errors of the means serve as s, since all pixels have as many samples. With a single
+    // The errors of the means serve as s, since all pixels have equally many samples. With a single
     // sample they are NaN.
     std::vector<float> deviation = observed.standard_error;
     for (float& value : deviation) value = value > 0.0F ? value : 0.0F;

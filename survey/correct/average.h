@@ -73,7 +73,7 @@ class RunningMean {
 // left. An InputError if the mean of its samples is not above 0.
 void divide_by_own_mean(RawImage& image);
 
-// How many samples of each of so many images fit into so much memory, at least one.
+// The number of samples per image that fit into the memory for this many images, at least one.
 [[nodiscard]] std::size_t samples_in_memory(std::size_t images, double memory_mb);
 
 }  // namespace aphotic

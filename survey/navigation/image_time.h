@@ -9,9 +9,9 @@
 //   PR_20240309_123456_789_LC16.tif
 //   xxxYYYYMMDDxhhmmssxfff
 //
-// YYYY, MM, DD, hh, mm, ss stand for the digits of year to second; fff, if there, for milliseconds
-// and uuu for microseconds; any other character for any one character. It may end before the name
-// does. The letters are those of oplab's filename_to_date.
+// YYYY, MM, DD, hh, mm, ss stand for the digits of year to second; fff, if present, for
+// milliseconds and uuu for microseconds; any other character for any one character. It may end
+// before the name does. The letters are those of oplab's filename_to_date.
 //
 // Without a mask: EXIF's DateTimeOriginal with SubSecTimeOriginal, the digits of a decimal
 // fraction, in the zone of OffsetTimeOriginal; if that is missing or blank, in UTC. OffsetTime is

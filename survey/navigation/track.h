@@ -4,11 +4,11 @@
 //
 //   pose(t) = pose_i + (pose_i+1 - pose_i) (t - t_i) / (t_i+1 - t_i),     t_i <= t <= t_i+1
 //
-// and their places alike, headings the shorter way round. At a point's own time it is that point's
-// pose. A point's angles are within 89.9 degrees of level, so that this is the shorter way round.
-// If the altitude has an acceleration a, the error is at most a (t_i+1 - t_i)^2 / 8: for a sled
-// that swell heaves by half a metre every ten seconds, 0.2 m/s^2, that is 0.1 m over kLongestGap_s,
-// the width of an altitude bin.
+// and their places likewise, headings the shorter way round. At a point's own time it is that
+// point's pose. A point's angles are within 89.9 degrees of level, so that this is the shorter way
+// round. If the altitude has an acceleration a, the error is at most a (t_i+1 - t_i)^2 / 8: for a
+// sled that swell heaves by half a metre every ten seconds, 0.2 m/s^2, that is 0.1 m over
+// kLongestGap_s, the width of an altitude bin.
 #pragma once
 
 #include "survey/navigation/vehicle_pose.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The distance of what each pixel of an image shows, as other programs write it, one file per
-// image:
+// The depth of each pixel of an image, as other programs write it, one file per image:
 //
 //   .exr   channel Z, or the only one    metres          DeepSeaRenderer, renderers
 //   .npy   NumPy's array, rows first     metres          oplab_pipeline
