@@ -29,9 +29,7 @@ Beam even_light_behind(const BeamWindow& window) {
 }  // namespace
 
 BeamLight::BeamLight(const Beam& beam, const Vector3d& axis)
-    : beam_(beam),
-      frame_(frame_about(axis)),
-      has_edge_(!edges_rad(beam).empty() || has_rim(beam)) {
+    : beam_(beam), frame_(frame_about(axis)), has_edge_(!edges_rad(beam).empty() || has_rim(beam)) {
     if (is_round(beam)) {
         profile_.emplace(beam);
         return;
@@ -94,8 +92,8 @@ Lanes BeamLight::continued(const LaneVector& towards,
     if (profile_) return profile_->continued(cosine(towards, length), cosine(from, from_length));
     Lanes I;
     for (std::size_t k = 0; k < kLanes; ++k)
-        I[k] = continued_intensity(
-            beam_, frame_, vector_of_lane(towards, k), vector_of_lane(from, k));
+        I[k] =
+            continued_intensity(beam_, frame_, vector_of_lane(towards, k), vector_of_lane(from, k));
     return I;
 }
 

@@ -24,8 +24,8 @@ double least_step(const std::vector<double>& angles_rad) {
 double narrowest_rad(const Beam& beam) {
     double narrowest = std::numbers::pi;
     for (const Cone& cone : beam.cones) {
-        narrowest =
-            std::min({narrowest, 2.0 * cone.half_angle_rad, 2.0 / std::sqrt(cone.exponent)});
+        narrowest = std::min(
+            {narrowest, 2.0 * cone.half_angle_rad - cone.edge_rad, 2.0 / std::sqrt(cone.exponent)});
     }
     const bool is_steep = !steep_creases(beam, frame_about(Eigen::Vector3d::UnitZ())).empty();
     if (const auto* table = std::get_if<BeamTable>(&beam.pattern); table != nullptr && is_steep) {

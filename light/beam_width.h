@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The width of the narrowest light in a beam, so that samples leave no wider gaps:
+// The width of the narrowest light in a beam, which the spacing of samples must not exceed:
 //
-//   a cone               2 gamma, its half angle's double; of a lobe cos^n at most 2 / sqrt(n)
-//   a table              two steps of its angles where these are least, if a line of it is steep
-//                        (steep_crease.h): a peak between its neighbours
+//   a cone               2 gamma - e, twice its half angle less its soft edge: its width at half
+//                        of the light; for a lobe cos^n at most 2 / sqrt(n)
+//   a table              two steps of its angles where they are smallest, if one of its lines is
+//                        steep (steep_crease.h): a peak between two neighbours
 //   an image by a lens   the angle of its shorter side
 //
-// A table without steep lines has no narrow light, and the width is pi. So it is for a uniform
-// lamp, a cone of 90 degrees with n = 0.
+// A table without steep lines has no narrow light, and its width is pi. The same holds for a
+// uniform lamp, a cone of 90 degrees with n = 0.
 #pragma once
 
 #include "rig/beam/beam.h"

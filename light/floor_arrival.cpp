@@ -27,12 +27,10 @@ std::optional<FloorArrival> arrival_of(const Rig& rig,
     light.diffuse = share * I * even.per_area;
     light.path_m = even.path_m;
     if (rig.seafloor.phong == 0.0) return light;
-    light.highlight = share * I *
-                      highlight_per_area(rig.seafloor,
-                                         height_m,
-                                         sight.down,
-                                         sight.direction.dot(light.towards),
-                                         length);
+    light.highlight =
+        share * I *
+        highlight_per_area(
+            rig.seafloor, height_m, sight.down, sight.direction.dot(light.towards), length);
     return light;
 }
 

@@ -61,7 +61,9 @@ class FloorTiles : public TileLight {
         return light_.rays_at(column, row, is_exact);
     }
 
-    [[nodiscard]] LaneLight find(const Group& lamps, const LaneRays& rays, bool /*is_exact*/) const {
+    [[nodiscard]] LaneLight find(const Group& lamps,
+                                 const LaneRays& rays,
+                                 bool /*is_exact*/) const {
         LaneLight found;
         for (const FloorLamp* lamp : lamps) light_.add(*lamp, rays, found);
         return found;

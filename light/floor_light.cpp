@@ -191,8 +191,7 @@ FloorLight::LaneArrival FloorLight::arrive(const FloorLamp& lamp,
         set_pack(found.towards, k, V);
         found.length.set_pack(k, length);
         found.diffuse.set_pack(k, lamp.share * even.per_area);  // so far
-        found.place.set_pack(k,
-                             (even.path_m - table_.steps.first_m) * table_.steps.steps_per_m);
+        found.place.set_pack(k, (even.path_m - table_.steps.first_m) * table_.steps.steps_per_m);
     });
     const BeamLight& beam = strobes_[lamp.strobe].beam;
     const Lanes I = from == nullptr
@@ -202,16 +201,13 @@ FloorLight::LaneArrival FloorLight::arrive(const FloorLamp& lamp,
         [&](std::size_t k) { found.diffuse.set_pack(k, I.pack(k) * found.diffuse.pack(k)); });
     if (rig_.seafloor.phong == 0.0) return found;
     for (std::size_t k = 0; k < kLanes; ++k) {
-        const double along =
-            vector_of_lane(ray.direction, k).dot(vector_of_lane(found.towards, k));
-        found.highlight[k] = found.diffuse[k] == 0.0
-                                 ? 0.0
-                                 : lamp.share * I[k] *
-                                       highlight_per_area(rig_.seafloor,
-                                                          lamp.floor_m[k],
-                                                          ray.down[k],
-                                                          along,
-                                                          found.length[k]);
+        const double along = vector_of_lane(ray.direction, k).dot(vector_of_lane(found.towards, k));
+        found.highlight[k] =
+            found.diffuse[k] == 0.0
+                ? 0.0
+                : lamp.share * I[k] *
+                      highlight_per_area(
+                          rig_.seafloor, lamp.floor_m[k], ray.down[k], along, found.length[k]);
     }
     return found;
 }
@@ -269,9 +265,9 @@ void FloorLight::look_between(const FloorLamp& lamp,
     for (const std::vector<float>& table : strobe.signal->highlight)
         add_signals(table, table_.steps.count, last_place, highlight, light.doubts);
     for (std::size_t k = 0; k < kLanes && !strobe.steep.empty(); ++k) {
-        const bool sees_all = std::ranges::all_of(
-            std::span(rays.ray).first(kIndexNodes),
-            [&](const LaneRay& ray) { return ray.down[k] > 0.0; });
+        const bool sees_all =
+            std::ranges::all_of(std::span(rays.ray).first(kIndexNodes),
+                                [&](const LaneRay& ray) { return ray.down[k] > 0.0; });
         if (last_place[k] < 0.0 || !sees_all) continue;
         const std::array<Vector3d, kIndexNodes> ways{vector_of_lane(at_nodes[0].towards, k),
                                                      vector_of_lane(at_nodes[1].towards, k),
@@ -325,7 +321,8 @@ Signals FloorLight::dispersed(std::span<const FloorLamp* const> lamps,
                 if (found.diffuse[k] == 0.0 || place < 0.0 || place >= table_.steps.count) continue;
                 const double path_m = table_.steps.first_m + place / table_.steps.steps_per_m;
                 const auto wavelength = static_cast<Eigen::Index>(first + k);
-                const double left = std::exp(-signal.dispersed_diffuse.K_per_m(wavelength) * path_m);
+                const double left =
+                    std::exp(-signal.dispersed_diffuse.K_per_m(wavelength) * path_m);
                 for (std::size_t c = 0; c < kChannels; ++c) {
                     const auto channel = static_cast<Eigen::Index>(c);
                     sum[c] += left * found.diffuse[k] *

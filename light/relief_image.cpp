@@ -182,8 +182,7 @@ void ReliefPainter::look_at_lanes(std::span<const Pixel> pixels) {
                               .normal = vector_of_lane(floor.normal, k)};
             const bool is_hidden = one.hidden[pixel[k]] != 0;
             if (is_hidden) seen[k] += one.of_shadow;
-            lamp.floor_m[k] =
-                is_hidden ? 0.0 : std::max(0.0, height_above(plane, lamp.position_m));
+            lamp.floor_m[k] = is_hidden ? 0.0 : std::max(0.0, height_above(plane, lamp.position_m));
         }
         for (std::size_t e = 0; e < one.of_edges.size(); ++e) {
             LaneVector V;
@@ -237,7 +236,8 @@ float ReliefPainter::interpolated(const Cell& cell, std::size_t channel, const P
 bool ReliefPainter::is_right(const Cell& cell, const Pixel& middle) {
     for (std::size_t c = 0; c < kChannels; ++c) {
         const float there = sample(c, relief_.at(middle.column, middle.row));
-        if (!(std::abs(interpolated(cell, c, middle) - there) <= kReliefError * there)) return false;
+        if (!(std::abs(interpolated(cell, c, middle) - there) <= kReliefError * there))
+            return false;
     }
     return true;
 }

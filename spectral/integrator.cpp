@@ -38,115 +38,52 @@ struct Block {
     }
 };
 
-// Reads a frame's rows and returns the samples of each of its wavelengths, checked. frame: of the
-// direct light; the file is this one or one of the veil's next to it.
-template <typename Take>
-void read_frame(const fs::path& file,
-                const Manifest& manifest,
-                std::size_t frame,
-                const Block& block,
-                const Take& take) {
+// The samples of a block of a frame, all channels at once, since OpenEXR decompresses them together
+// anyway.
+std::vector<float> samples_of(const fs::path& file, const Manifest& manifest, const Block& block) {
     static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
                                                          kChannelNames.end());
-    // All channels at once, since OpenEXR decompresses them together anyway.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
     ExrReader reader(file);
     check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
     reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
-    for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-        const PlannedWavelength& w = manifest.wavelengths[j];
-        if (w.frame != frame) continue;
-        const auto from =
-            std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
-        check_samples(file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
-        take(j, from);
-    }
+    return samples;
 }
 
-// Divides by the exposures.
-void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
-    for (std::size_t f = 0; f < manifest.direct_frames(); ++f) {
-        read_frame(image_path(folder, manifest.frames[f]),
-                   manifest,
-                   f,
-                   block,
-                   [&](std::size_t j, std::span<const float> from) {
-                       const double scale = std::ldexp(1.0, -manifest.wavelengths[j].exposure_log2);
-                       std::ranges::transform(
-                           from, block.radiance(j).begin(), [scale](float sample) {
-                               return static_cast<float>(scale * sample);
-                           });
-                   });
-    }
-}
-
-void sum_signals(const Manifest& manifest, Block& block) {
-    std::vector<double> sum(block.plane);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        std::fill(sum.begin(), sum.end(), 0.0);
-        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-            const double weight = manifest.wavelengths[j].weight[c];
-            const std::span<const float> radiance = block.radiance(j);
-            for (std::size_t i = 0; i < block.plane; ++i) sum[i] += weight * radiance[i];
-        }
-        std::transform(sum.begin(), sum.end(), block.signal(c).begin(), [](double value) {
-            return static_cast<float>(value);
-        });
-    }
-}
-
-// How a veil frame contributes at a wavelength: what each lobe adds, and what is not scattered by
-// the water, which every lobe's frame contains.
-std::vector<double> signs_of(const PlannedWavelength& w, const ManifestPovrayVeil& veil) {
-    std::vector<double> signs;
-    double sum = 0.0;
-    for (const double scattering_per_m : w.veil->scattering_per_m) {
-        signs.push_back(scattering_per_m < 0.0 ? -1.0 : 1.0);
-        sum += signs.back();
-    }
-    if (veil.takes_surfaces_off) signs.push_back(-sum);
-    return signs;
-}
-
-// Adds the veil that POV-Ray rendered to radiance and signals.
-void add_povray_veil(const fs::path& folder,
-                     const Manifest& manifest,
-                     const std::vector<float>& vignetting,
-                     Block& block) {
-    if (!manifest.veil || !manifest.veil->povray) return;
+// Of the frames' layers, times the vignetting unless it is empty.
+void sum_layers(const fs::path& folder,
+                const Manifest& manifest,
+                const std::vector<float>& vignetting,
+                Block& block) {
     const auto first_pixel =
         static_cast<std::size_t>(block.first_row) * static_cast<std::size_t>(manifest.width_px);
-    const std::size_t direct = manifest.direct_frames();
-    const std::size_t sets = manifest.frames.size() / direct - 1;
-    for (std::size_t f = 0; f < direct; ++f) {
-        std::vector<std::vector<double>> veil(manifest.wavelengths.size());
-        for (std::size_t set = 0; set < sets; ++set) {
-            read_frame(image_path(folder, manifest.frames[(1 + set) * direct + f]),
-                       manifest,
-                       f,
-                       block,
-                       [&](std::size_t j, std::span<const float> from) {
-                           const PlannedWavelength& w = manifest.wavelengths[j];
-                           const double sign = signs_of(w, *manifest.veil->povray)[set];
-                           veil[j].resize(block.plane);
-                           for (std::size_t i = 0; i < block.plane; ++i)
-                               veil[j][i] += sign * from[i];
-                       });
-        }
-        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-            if (veil[j].empty()) continue;
-            const PlannedVeil& planned = *manifest.wavelengths[j].veil;
-            const double scale = std::ldexp(1.0, -planned.exposure_log2);
-            for (std::size_t i = 0; i < block.plane; ++i) {
-                veil[j][i] *= vignetting.empty() ? scale : scale * vignetting[first_pixel + i];
-                block.radiance(j)[i] += static_cast<float>(veil[j][i]);
-            }
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                for (std::size_t i = 0; i < block.plane; ++i)
-                    block.signal(c)[i] += static_cast<float>(planned.weight[c] * veil[j][i]);
-            }
+    std::array<std::vector<double>, kChannels> signals;
+    signals.fill(std::vector<double>(block.plane));
+    std::optional<std::size_t> frame;
+    std::vector<float> samples;
+    for (const ManifestLayer& layer : manifest.layers()) {
+        const fs::path file = image_path(folder, manifest.frames[layer.frame]);
+        if (layer.frame != frame) samples = samples_of(file, manifest, block);
+        frame = layer.frame;
+        const auto from =
+            std::span<const float>(samples).subspan(layer.channel * block.plane, block.plane);
+        check_samples(file,
+                      std::string(kChannelNames[layer.channel]),
+                      from,
+                      manifest.width_px,
+                      block.first_row);
+        const std::span<float> radiance = block.radiance(layer.wavelength);
+        for (std::size_t i = 0; i < block.plane; ++i) {
+            auto L = static_cast<float>(layer.scale * from[i]);
+            if (!vignetting.empty()) L *= vignetting[first_pixel + i];
+            radiance[i] += L;
+            for (std::size_t c = 0; c < kChannels; ++c) signals[c][i] += layer.weight[c] * L;
         }
     }
+    for (std::size_t c = 0; c < kChannels; ++c)
+        std::ranges::transform(signals[c], block.signal(c).begin(), [](double value) {
+            return static_cast<float>(value);
+        });
 }
 
 // Weights and exposures from a manifest that is not ours may overflow floats.
@@ -219,15 +156,6 @@ std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifes
     return factors;
 }
 
-void take_off(const std::vector<float>& vignetting, const Manifest& manifest, Block& block) {
-    const auto first =
-        static_cast<std::size_t>(block.first_row) * static_cast<std::size_t>(manifest.width_px);
-    for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-        const std::span<float> radiance = block.radiance(j);
-        for (std::size_t i = 0; i < block.plane; ++i) radiance[i] *= vignetting[first + i];
-    }
-}
-
 // The veil, from a file next to the frames.
 class VeilReader {
   public:
@@ -284,11 +212,8 @@ CameraImage integrate_into(const fs::path& images_folder,
         block.plane =
             static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(manifest.width_px);
         block.samples.resize(block.plane * (kChannels + manifest.wavelengths.size()));
-        read_radiance(folder, manifest, block);
-        if (!vignetting.empty()) take_off(vignetting, manifest, block);
-        sum_signals(manifest, block);
+        sum_layers(folder, manifest, vignetting, block);
         veil.add_to(block, vignetting);
-        add_povray_veil(folder, manifest, vignetting, block);
         require_finite(folder, manifest, block);
         images.write_rows(block.rows, std::move(block.samples));
         if (report) report(static_cast<double>(row + block.rows) / height_px);

@@ -5,15 +5,15 @@
 //   L(lambda_j) = 2^-e_j F_j
 //   S_c         = sum_j w_cj L(lambda_j)        and the veil's, where the water scatters
 //
-// The veil comes from a file, or from POV-Ray's frames, which add up likewise with their own
-// weights.
+// in one loop over the frames' layers (manifest.h); a veil by POV-Ray has layers of its own, any
+// other comes from a file.
 //
 // F_j   what the frame of wavelength j holds, in its channel      e_j   the frame's exposure
 // L     spectral radiance       [unit of the lamp's spectrum / (m^2 sr)]
 // w_cj  weight of wavelength j in channel c: band width times response, or fitted
 // S_c   signal of channel c, linear; nothing else scales it
 //
-// Scaling by a power of two is exact; the sums run in double, in the manifest's order, so the
+// Scaling by a power of two is exact; the sums run in double, in the frames' order, so the
 // images do not depend on threads. Frames are read in blocks of rows: memory is a few images,
 // whatever the number of wavelengths.
 #pragma once

@@ -354,6 +354,36 @@ std::size_t Manifest::direct_frames() const {
     return count;
 }
 
+// A veil's frame holds what a lobe scatters, and what other light reaches the camera: of that, all
+// lobes' frames together hold as many times too much as their signs sum to.
+std::vector<ManifestLayer> Manifest::layers() const {
+    const std::size_t direct = direct_frames();
+    std::vector<ManifestLayer> all;
+    for (std::size_t j = 0; j < wavelengths.size(); ++j) {
+        const PlannedWavelength& w = wavelengths[j];
+        ManifestLayer layer{.frame = w.frame,
+                            .channel = w.channel,
+                            .wavelength = j,
+                            .scale = std::ldexp(1.0, -w.exposure_log2),
+                            .weight = w.weight};
+        all.push_back(layer);
+        if (!veil || !veil->povray) continue;
+        layer.weight = w.veil->weight;
+        double signs = 0.0;
+        const auto add = [&](double sign) {
+            layer.frame += direct;
+            layer.scale = std::ldexp(sign, -w.veil->exposure_log2);
+            all.push_back(layer);
+            signs += sign;
+        };
+        for (const double scattering_per_m : w.veil->scattering_per_m)
+            add(scattering_per_m < 0.0 ? -1.0 : 1.0);
+        if (veil->povray->takes_surfaces_off) add(-signs);
+    }
+    std::ranges::stable_sort(all, {}, &ManifestLayer::frame);
+    return all;
+}
+
 double Manifest::black(std::size_t channel) const {
     const double room = png ? 1.0 : 64.0;
     const int held = held_log2(frame_format());

@@ -80,9 +80,6 @@ struct ManifestPovrayVeil {
 // The light that the water scatters into the view: a file next to the frames (veil_path), or
 // POV-Ray frames. If more than the bare floor is in view, the last frame holds no light but a fog
 // of distance fog_m in red: 1 - exp(-D / fog_m), which gives the distance D that each pixel sees.
-//
-// Where more than the bare floor is in view, the last frame holds no light but, in red, a fog of
-// the distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
 struct ManifestVeil {
     std::string sha256{};  // of the file; empty: not made yet, or rendered by POV-Ray
     double fog_m = 0.0;    // 0: the bare floor, and no such frame
@@ -102,6 +99,17 @@ inline constexpr const char* kModelErrorAttribute = "aphotic:model_error";
 // Rig keys set on the command line, KEY=VALUE each.
 struct ManifestSettings {
     std::vector<std::string> keys{};
+};
+
+// What one channel of a frame adds to the image: direct light, or a part of the veil.
+//
+//   L(lambda_j) += s F,     S_c += w_cj s F
+struct ManifestLayer {
+    std::size_t frame = 0;
+    std::size_t channel = 0;                 // that holds F
+    std::size_t wavelength = 0;              // j
+    double scale = 1.0;                      // s: a power of two, of either sign or 0
+    std::array<double, kChannels> weight{};  // w_cj
 };
 
 struct Manifest {
@@ -139,6 +147,8 @@ struct Manifest {
 
     // The direct light's wavelengths, which come first.
     [[nodiscard]] std::size_t direct_frames() const;
+    // Of all frames, in their order.
+    [[nodiscard]] std::vector<ManifestLayer> layers() const;
 
     [[nodiscard]] FrameFormat frame_format() const {
         return png ? FrameFormat::Png16 : FrameFormat::Exr;

@@ -297,6 +297,12 @@ FitBeam::Fitted FitBeam::fitted() const {
             theta_rad.push_back(widest_rad * i / steps);
             intensity.push_back(table_intensity_at(theta_rad.back()));
         }
+        // Beyond, no light was seen: the table continues to the horizon, without an edge.
+        const int more = static_cast<int>(std::ceil((0.5 * pi - widest_rad) / kKnot_rad));
+        for (int i = 1; i <= more; ++i) {
+            theta_rad.push_back(std::lerp(widest_rad, 0.5 * pi, static_cast<double>(i) / more));
+            intensity.push_back(std::min(intensity.back(), table_intensity_at(theta_rad.back())));
+        }
         const Beam beam = as_table(theta_rad, intensity);
         return {.beam = beam, .flux = 1.0 / beam.per_flux};
     }

@@ -26,7 +26,7 @@ struct Sandwich {
     MatrixXd scores;     // sum s s^T
 
     [[nodiscard]] MatrixXd covariance() const { return inverse * (scores + known) * inverse; }
-    // Of the difference between the answers of two halves.
+    // Of the difference between the solutions of two halves.
     [[nodiscard]] MatrixXd of_halves() const {
         const MatrixXd half = MatrixXd(0.5 * (curvature + known))
                                   .llt()
@@ -41,7 +41,7 @@ Sandwich sandwich_at(const FitObjective& objective, const FitPoint& point) {
                 .curvature = objective.curvature_of(terms),
                 .inverse = {},
                 .scores = {}};
-    // Far from an answer the t bends the other way: then its majorant serves.
+    // Far from a solution, the t's curvature can be negative: its majorant is used instead.
     if (of.curvature.llt().info() != Eigen::Success) {
         terms = objective.terms_at(point, Curvature::Majorant);
         of.curvature = objective.curvature_of(terms);
@@ -56,8 +56,8 @@ Sandwich sandwich_at(const FitObjective& objective, const FitPoint& point) {
     return of;
 }
 
-// The logarithm of the map by block and channel, at poses of the flight, as slopes over x; a mean
-// floor's level is left out.
+// The logarithm of the map by block and channel, at poses of the flight, as slopes over x; the
+// level of a mean floor is subtracted.
 std::vector<RowVectorXd> map_slopes(const FitObjective& objective, const FitPoint& point) {
     const FitState state = objective.state_at(point);
     const PathLight light = objective.path_light(state);
@@ -86,8 +86,8 @@ double mean_variance(const std::vector<RowVectorXd>& slopes, const MatrixXd& cov
     return sum / std::max(1.0, static_cast<double>(slopes.size()));
 }
 
-// By number, of one split: squares of what its halves differ by over the variances of that, for its
-// word and as far as these are few for all together.
+// By number, for one split: squared differences of its halves over their predicted variances,
+// averaged over the number's word, and over all together as far as those are few.
 VectorXd by_word(const FitProblem& problem, const VectorXd& squares) {
     struct Sum {
         double squares = 0.0;
@@ -115,7 +115,7 @@ VectorXd by_word(const FitProblem& problem, const VectorXd& squares) {
 double dispersion_at(const FitObjective& objective, const FitPoint& point) {
     if (objective.counted(point).size() < kFewestImages) return point.dispersion;
     const Sandwich of = sandwich_at(objective, point);
-    // S at the point is divided by the dispersion that it has.
+    // S at the point is divided by the point's own dispersion.
     return std::max(1.0,
                     point.dispersion * (of.inverse * of.scores).trace() /
                         (of.inverse * (of.curvature - of.known)).trace());
@@ -149,7 +149,7 @@ FitErrors errors_of(const FitObjective& objective,
                      .unevenness = std::sqrt(mean_variance(slopes, C))};
     if (are_few) return errors;
     const MatrixXd wanted = sandwich.of_halves();
-    // Of what no image shows, such as the aim of a lamp that is off, halves differ by nothing.
+    // Halves do not differ in numbers that no image shows, such as the aim of a lamp that is off.
     constexpr double kNothing = std::numeric_limits<double>::min();
     const VectorXd variances = (keep * wanted.topLeftCorner(count, count) * keep.transpose())
                                    .diagonal()
@@ -164,7 +164,10 @@ FitErrors errors_of(const FitObjective& objective,
         map_log_square +=
             std::log(mean_variance(slopes, apart * apart.transpose()) / map_variance) / kSplits;
     }
-    const VectorXd F = (0.5 * log_squares).array().exp().max(1.0);
+    VectorXd F = (0.5 * log_squares).array().exp().max(1.0);
+    for (Index k = 0; k < count; ++k)
+        if (problem.numbers[static_cast<std::size_t>(k)].at.part == FitPart::Aim)
+            F(k) *= kAimWidening;
     errors.covariance = F.asDiagonal() * errors.covariance * F.asDiagonal();
     errors.unevenness *= std::max(1.0, std::exp(0.5 * map_log_square));
     return errors;

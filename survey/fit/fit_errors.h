@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far a fit can be off. The covariance of its numbers is
+// The errors of a fit. The covariance of its numbers is
 //
 //   C = F A^-1 (sum over images s s^T + R^T R) A^-1 F,     A = sum over images H + R^T R
 //
-// H  curvature of an image's part of S/2          s  its gradient, (1 - H A^-1)^-1 of that at the
-// R  what is known beforehand (fit_problem.h)        answer: as though the answer were made without
-//                                                    the image (CR3)
+// H  curvature of an image's part of S/2      s  its gradient, (1 - H A^-1)^-1 of that at the
+// R  the prior (fit_problem.h)                   solution: as if the image had been left out of the
+//                                                fit (CR3)
 //
-// It holds however noise and texture of an image hang together, for images are independent. The
-// same two sums tell how much less an image says than its likelihood:
+// It holds whatever the correlation of noise and texture within an image, since images are
+// independent. The same two sums give the information in an image relative to its likelihood:
 //
 //   phi = trace(A^-1 sum s s^T) / trace(A^-1 sum H)          the dispersion, at least 1
 //
-// All this takes light for linear within the errors. Aims that make up for each other are not:
-// their errors would be half of what they are. F is what two halves of the survey differ by over
-// what C says of such halves, for each kind of number, and as far as these are few, for all
-// together; the geometric mean over kSplits pairs of halves, for now and then one is lost, and at
-// least 1. It is measured alike for the map.
+// All this treats the light as linear within the errors. For aims that compensate for each other it
+// is not, and their errors would be half of the true ones. F is the difference between two halves
+// of the survey relative to what C predicts for such halves, for each kind of number, and for all
+// together as far as the numbers of a kind are few; it is the geometric mean over kSplits pairs of
+// halves, since one is occasionally lost, and at least 1. It is determined likewise for the map.
+// Aims have several solutions that explain a survey almost equally well, and halves end at the same
+// one: over forty random surveys (bench/fit_bench) they were off by kAimWidening times such errors,
+// rms, by which theirs are multiplied besides.
 //
-// Fewer than kFewestImages that count tell neither: their dispersion is what it was,
-// kFirstDispersion, of patchy floors, and C = A^-1.
+// Fewer than kFewestImages that count determine neither: their dispersion stays kFirstDispersion,
+// typical of patchy floors, and C = A^-1.
 //
 // K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986, 13 (sandwich); R. M. Bell and D. F. McCaffrey,
 // Survey Methodology 28, 2002, 169 (CR3); F. Pauli, W. Racugno and L. Ventura, Statistica Sinica
@@ -37,22 +40,23 @@
 namespace aphotic {
 
 inline constexpr std::size_t kFewestImages = 16;
-// A word's own numbers count against so many of all words together.
+// The weight of all numbers together against a word's own numbers.
 inline constexpr double kOfAll = 3.0;
 inline constexpr std::size_t kSplits = 2;
-// The poses of the flight that the map's error is the mean over, at most.
+inline constexpr double kAimWidening = 1.7;
+// The most poses of the flight over which the map's error is averaged.
 inline constexpr std::size_t kFewPoses = 12;
 
 [[nodiscard]] double dispersion_at(const FitObjective& objective, const FitPoint& point);
 
-// Numbers less what all powers have in common, which no image tells and no map asks for.
+// Numbers less the common scale of all powers, which images do not determine and maps do not need.
 [[nodiscard]] Eigen::MatrixXd without_common_power(const FitProblem& problem);
 
 struct FitErrors {
     Eigen::MatrixXd covariance;  // of the problem's numbers, less the common power
-    double unevenness = 0.0;     // of the map's logarithm over the flight, its mean left out; rms
+    double unevenness = 0.0;     // of the map's logarithm over the flight, less its mean; rms
 };
-// half(split, which): the answer of half of the images that count.
+// half(split, which): the solution for half of the images that count.
 [[nodiscard]] FitErrors errors_of(const FitObjective& objective,
                                   const FitProblem& problem,
                                   const FitPoint& point,

@@ -35,6 +35,18 @@ TEST(BeamWidth, OfALobeIsWhereItIsBright) {
     EXPECT_NEAR(std::pow(std::cos(0.5 * width_rad), kExponent), std::exp(-0.5), 1e-3);
 }
 
+// Half of the light on the axis.
+TEST(BeamWidth, OfASoftConeIsWhereItIsHalfAsBright) {
+    Beam soft = cone(0.3, 0.0);
+    soft.cones[0].edge_rad = 0.2;
+    const BeamFrame frame = frame_about(Eigen::Vector3d::UnitZ());
+    const double off_rad = 0.5 * narrowest_rad(soft);
+    const Eigen::Vector3d beside(std::sin(off_rad), 0.0, std::cos(off_rad));
+    EXPECT_NEAR(intensity_towards(soft, frame, beside),
+                0.5 * intensity_towards(soft, frame, Eigen::Vector3d::UnitZ()),
+                1e-12);
+}
+
 Beam round_table(const std::vector<double>& intensity) {
     BeamTable table{.vertical_rad = {}, .horizontal_rad = {0.0}, .intensity = intensity};
     for (std::size_t i = 0; i < intensity.size(); ++i)

@@ -78,8 +78,7 @@ TEST(RoundProfile, IsEachLanesOwn) {
             Lanes cosines;
             for (std::size_t k = 0; k < kLanes; ++k) cosines[k] = std::cos(theta_rad(k));
             const Lanes found = profile.at(cosines);
-            for (std::size_t k = 0; k < kLanes; ++k)
-                ASSERT_EQ(found[k], at(profile, theta_rad(k)));
+            for (std::size_t k = 0; k < kLanes; ++k) ASSERT_EQ(found[k], at(profile, theta_rad(k)));
         }
     }
 }
@@ -93,8 +92,7 @@ TEST(RoundProfile, HasTheDigitsOfDimLight) {
     const RoundProfile profile(beam);
     for (double theta_deg = 0.5; theta_deg < 60.0; theta_deg += 0.5) {
         const double expected = intensity_towards(beam, kFrame, towards(theta_deg * kDegree));
-        EXPECT_NEAR(at(profile, theta_deg * kDegree), expected, kOff * expected)
-            << theta_deg;
+        EXPECT_NEAR(at(profile, theta_deg * kDegree), expected, kOff * expected) << theta_deg;
     }
 }
 

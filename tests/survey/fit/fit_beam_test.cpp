@@ -143,6 +143,23 @@ TEST(FitBeam, WhatIsWrittenShinesAlike) {
     }
 }
 
+// Past the widest angle that images show, light falls as it did there: of cos^4 by 4 tan(theta) a
+// radian, of its logarithm. It ends at the horizon.
+TEST(FitBeam, AWrittenTableHasNoEdgeWhereImagesEnd) {
+    const FitBeam beam(FitBeamKind::Table, cosine(4.0), kWidest_rad, kBlock_rad);
+    const Beam written = beam.fitted().beam;
+    const auto& table = std::get<BeamTable>(written.pattern);
+    EXPECT_EQ(table.vertical_rad.back(), 0.5 * pi);
+    const auto at = [&](double theta_rad) {
+        return intensity_towards(
+            written, frame_about(Vector3d::UnitZ()), direction(theta_rad, 0.0));
+    };
+    constexpr double kOfSplines = 0.03;  // their last slope, of a function that steepens
+    EXPECT_NEAR(at(kWidest_rad + 0.1) / at(kWidest_rad),
+                std::exp(-0.4 * std::tan(kWidest_rad)),
+                kOfSplines);
+}
+
 // Second differences of a table by kRoughness, and one row that holds its mean over what it lights:
 // a straight line of the same mean costs nothing.
 TEST(FitBeam, ATablesPriorIsItsRoughness) {
