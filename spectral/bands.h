@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The wavelengths that represent the spectrum, and their weights.
+// Wavelengths that represent the spectrum, and their weights.
 //
 //   S_c = int L(lambda) Q_c(lambda) dlambda  ~  sum_j w_cj L(lambda_j)
 //

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr WavelengthRange kVisible{380.0, 780.0};
 
-// Calls work on every whole nanometre in the range.
+// Calls work with every whole nanometre of the range.
 template <typename Work>
 void each_nm(WavelengthRange range, const Work& work) {
     for (double nm = std::ceil(range.first_nm); nm <= range.last_nm; nm += 1.0) work(nm);
@@ -40,7 +40,7 @@ std::vector<Spectrum> surfaces() {
     return surfaces;
 }
 
-// An observer's response by daylight.
+// An observer's response under daylight.
 class Observer {
   public:
     Observer()
@@ -91,7 +91,7 @@ class Observer {
     Matrix3d srgb_of_xyz_;
 };
 
-// Under equal energy in each channel: the response to each surface over that to white.
+// The response to each surface over that to white, under equal energy in each channel.
 std::vector<ShownSurface> shown(const Sensor& sensor,
                                 WavelengthRange range,
                                 const std::function<double(double)>& light,
@@ -122,8 +122,8 @@ std::vector<ShownSurface> shown(const Sensor& sensor,
     return all;
 }
 
-// Rows that add up to 1 are the identity's plus a combination of two rows that add up to 0: least
-// squares in two unknowns, of least norm where the surfaces leave a choice.
+// A row that adds up to 1 is the identity's plus a combination of two rows that add up to 0: least
+// squares in two unknowns, of least norm where the surfaces do not determine them.
 Matrix3d fitted(const std::vector<ShownSurface>& surfaces) {
     const auto rows = static_cast<Eigen::Index>(surfaces.size());
     Eigen::MatrixX2d differences(rows, 2);

@@ -2,14 +2,14 @@
 //
 // The matrix from a camera's channels to sRGB, which makes a corrected image viewable.
 //
-// A survey divided by its light holds in each channel the reflectance as that channel sees it; in
-// sRGB, a surface should look as it does by daylight:
+// An image divided by its light holds in each channel the reflectance as that channel sees it. In
+// sRGB, a surface should look as it does under daylight:
 //
 //   v_c = int rho E Q_c dlambda / int E Q_c dlambda
 //   t   = A^-1 X,   X = int rho D (xbar, ybar, zbar) dlambda / int D ybar dlambda
 //   M   = argmin sum over surfaces |M v - t|^2,   each row of M adding up to 1
 //
-// rho   reflectance of a surface; outside its table, that at the table's end          [1]
+// rho   reflectance of a surface; outside its table, the value at the table's end     [1]
 // E     light on its way from the lamps to the camera, relative
 // Q_c   the camera's response (sensor.h)
 // D     CIE standard illuminant D65, xbar ... the CIE 1931 2-degree observer, over 380 to 780 nm
@@ -20,7 +20,7 @@
 // built-in reflectances. Since the rows add up to 1, grey stays grey and white white, exactly. If
 // channels are indistinguishable, the result is the best matrix nearest the identity.
 //
-// The remaining error is the distance in CIELAB (CIE 1976) between M v and t, with white D65: no
+// The remaining error is the distance in CIELAB (CIE 1976) between M v and t, with white D65. No
 // matrix is exact unless the camera's responses are the observer's.
 //
 // Primaries: IEC 61966-2-1:1999. Rows that keep white: G. D. Finlayson and M. S. Drew, "Constrained
@@ -43,18 +43,18 @@ struct ShownSurface {
     std::string name;
     Eigen::Vector3d channels;  // v
     Eigen::Vector3d srgb;      // t, linear
-    double delta_e = 0.0;      // of M v from t
+    double delta_e = 0.0;      // the error of M v
 };
 
 struct CameraToSrgb {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
-    std::vector<ShownSurface> surfaces{};  // that it was fitted to
+    std::vector<ShownSurface> surfaces{};  // used for the fit
 
     [[nodiscard]] double mean_delta_e() const;
     [[nodiscard]] const ShownSurface& worst() const;
 };
 
-// light: E over the range's wavelengths. An InputError if a channel receives none of it.
+// light: E over the range's wavelengths. An InputError if a channel receives no light.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Sensor& sensor,
                                           WavelengthRange range,
                                           const std::function<double(double lambda_nm)>& light);

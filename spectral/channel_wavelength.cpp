@@ -53,7 +53,7 @@ std::optional<double> wavelength_nm(std::string_view part) {
 
 struct SpectralName {
     std::string_view quantity;
-    std::vector<double> lambda_nm{};  // the last first
+    std::vector<double> lambda_nm{};  // in reverse order
 };
 
 SpectralName spectral_name(std::string_view name) {

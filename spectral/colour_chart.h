@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The 24 patches of the usual colour chart, by name, as colours under D65 for the 2-degree
+// The names of the usual colour chart's 24 patches, and their colours under D65 for the 2-degree
 // observer: the reflectances of scenes/user/chart/patches with cie-1931 and cie-d65, summed over
 // every 5 nm from 380 to 780 nm.
 #pragma once
@@ -44,7 +44,7 @@ inline constexpr std::array<ChartPatch, 24> kChartPatches{{
     {.name = "black", .lab = {21.413, -0.034, -0.947}},
 }};
 
-// The last six: white to black.
+// The last six are white to black.
 inline constexpr std::size_t kFirstGreyPatch = 18;
 
 }  // namespace aphotic

@@ -75,7 +75,7 @@ double ciede2000(const Lab& one, const Lab& other) {
     const double h1 = hue_deg(a1, one.b);
     const double h2 = hue_deg(a2, other.b);
     const bool has_hues = C1 * C2 > 0.0;
-    constexpr double kHalf_deg = 180.0 + 1e-9;  // roundings of opposite hues
+    constexpr double kHalf_deg = 180.0 + 1e-9;  // allows for rounding of opposite hues
 
     double dh = has_hues ? h2 - h1 : 0.0;
     if (dh > kHalf_deg) dh -= 360.0;
@@ -110,7 +110,7 @@ double srgb_decoded(double encoded) {
 
 double degrees_from_grey(const std::array<double, 3>& linear_rgb) {
     const auto [r, g, b] = linear_rgb;
-    // By the cross product with 1, 1, 1, since the cosine loses small angles.
+    // By the cross product with 1, 1, 1, since the cosine is inaccurate for small angles.
     const double across = std::hypot(g - b, b - r, r - g);
     const double along = r + g + b;
     if (across == 0.0 && along == 0.0) return std::nan("");

@@ -4,14 +4,15 @@
 //
 //   CIELAB     L = 116 f(Y/Yn) - 16, a = 500 (f(X/Xn) - f(Y/Yn)), b = 200 (f(Y/Yn) - f(Z/Zn)),
 //              f(t) = t^(1/3) above (6/29)^3, else (841/108) t + 4/29; white is D65
-//   CIEDE2000  with k_L = k_C = k_H = 1. About 1 is the least that one sees, side by side
+//   CIEDE2000  with k_L = k_C = k_H = 1. About 1 is just noticeable side by side
 //
 // Red, green and blue are linear sRGB (IEC 61966-2-1), with 1 for white, which is L = 100.
 //
 // G. Sharma, W. Wu and E. N. Dalal, "The CIEDE2000 color-difference formula: implementation notes,
 // supplementary test data, and mathematical observations", Color Research and Application 30(1),
-// 21-30 (2005), whose test data it reproduces to the last digit. Its mean hue is discontinuous
-// where two hues are opposite; hues that are opposite within rounding count as not beyond.
+// 21-30 (2005), whose test data this code reproduces to the last digit. Its mean hue is
+// discontinuous where two hues are opposite; hues that are opposite within rounding count as not
+// beyond.
 #pragma once
 
 #include <array>

@@ -31,8 +31,8 @@ struct BuiltinTable {
 // Throws InputError for an unknown name, with the nearest known one and the list of names.
 [[nodiscard]] Table builtin_table(std::string_view name);
 
-// A name that ends in ".csv" is a file in base_folder or below it (file_beside.h); any other is a
-// built-in table.
+// A name that ends in ".csv" is a file in base_folder or below it (file_beside.h); any other name
+// is a built-in table.
 [[nodiscard]] bool names_a_file(std::string_view name_or_path);
 [[nodiscard]] Table load_table(const std::string& name_or_path,
                                const std::filesystem::path& base_folder);

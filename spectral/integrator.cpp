@@ -50,7 +50,7 @@ std::vector<float> samples_of(const fs::path& file, const Manifest& manifest, co
     return samples;
 }
 
-// Of the frames' layers, times the vignetting unless it is empty.
+// The sum of the frames' layers, times the vignetting unless it is empty.
 void sum_layers(const fs::path& folder,
                 const Manifest& manifest,
                 const std::vector<float>& vignetting,
@@ -86,7 +86,7 @@ void sum_layers(const fs::path& folder,
         });
 }
 
-// Weights and exposures from a manifest that is not ours may overflow floats.
+// Weights and exposures of a manifest that we did not write may overflow floats.
 void require_finite(const fs::path& folder, const Manifest& manifest, const Block& block) {
     const auto at =
         std::ranges::find_if_not(block.samples, [](float x) { return std::isfinite(x); });
@@ -143,7 +143,7 @@ ExrAttributes attributes_of(const Manifest& manifest) {
     return attributes;
 }
 
-// The vignetting at each pixel; empty for none.
+// The vignetting at each pixel; empty without vignetting.
 std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.camera || manifest.camera->vignetting_sha256.empty()) return {};
     static const std::vector<std::string> kFactor{"Y"};

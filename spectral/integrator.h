@@ -3,12 +3,12 @@
 // From frames to images: the camera's signal and each pixel's spectral radiance.
 //
 //   L(lambda_j) = 2^-e_j F_j
-//   S_c         = sum_j w_cj L(lambda_j)        and the veil's, where the water scatters
+//   S_c         = sum_j w_cj L(lambda_j)        plus the veil's, where the water scatters
 //
-// in one loop over the frames' layers (manifest.h); a veil by POV-Ray has layers of its own, any
-// other comes from a file.
+// in one loop over the frames' layers (manifest.h). A veil by POV-Ray has layers of its own; any
+// other is read from a file.
 //
-// F_j   what the frame of wavelength j holds, in its channel      e_j   the frame's exposure
+// F_j   sample of the frame of wavelength j, in its channel      e_j   the frame's exposure
 // L     spectral radiance       [unit of the lamp's spectrum / (m^2 sr)]
 // w_cj  weight of wavelength j in channel c: band width times response, or fitted
 // S_c   signal of channel c, linear; nothing else scales it
@@ -38,8 +38,8 @@ CameraImage integrate(const std::filesystem::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report = {});
 
-// Signals only, to images/image.exr, for weights of a rig other than the frames', whose radiance
-// they do not hold. The veil, if the manifest has one, is veil_path(images).
+// Writes signals only, to images/image.exr, for the weights of another rig, whose radiance the
+// frames do not hold. The veil, if the manifest has one, is veil_path(images).
 CameraImage integrate_signals(const std::filesystem::path& folder,
                               const Manifest& manifest,
                               const std::filesystem::path& images,

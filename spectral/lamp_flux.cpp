@@ -11,7 +11,7 @@ namespace aphotic {
 
 namespace {
 
-// Integrates a function that is at most a parabola between the curves' knots, by Simpson's rule.
+// Integrates a function that is at most quadratic between the curves' knots, by Simpson's rule.
 double integral(std::span<const Spectrum* const> curves,
                 WavelengthRange range,
                 const std::function<double(double)>& value) {

@@ -8,7 +8,7 @@
 //   S   the lamp's table, over all of its range
 //   V   the CIE's luminous efficiency: ybar of the 1931 observer (cie-1931)
 //
-// Exact for the tables: between the knots of both, S V is a parabola.
+// This is exact for the tables: between the knots of both, S V is a parabola.
 //
 // Limit: a table that ends within the visible range has no luminous flux, except that it may miss
 // up to kMostUnseen of V's integral.
@@ -23,7 +23,7 @@ inline constexpr double kMostUnseen = 0.005;
 
 [[nodiscard]] double radiant_flux_w(const Spectrum& lamp);
 
-// InputError if the table leaves out more than kMostUnseen.
+// An InputError if the table misses more than kMostUnseen.
 [[nodiscard]] double luminous_flux_lm(const Spectrum& lamp);
 
 }  // namespace aphotic

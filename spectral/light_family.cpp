@@ -52,7 +52,7 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
     for (const auto& source : family.sources) {
         for (int i = 0; i < paths; ++i) {
             const double share = paths == 1 ? 0.0 : static_cast<double>(i) / (paths - 1);
-            // In even ratios, since paths may reach from metres to the horizon.
+            // In even ratios, since paths range from metres to the horizon.
             const double path_m =
                 family.shortest_path_m > 0.0
                     ? family.shortest_path_m *
@@ -64,13 +64,13 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
     return members;
 }
 
-// Scaled by exp(K_0 l), K_0 the least loss among the knots, so that no path is too long for a
-// double: errors are relative to a member's own signal.
+// The light is scaled by exp(K_0 l), K_0 the least loss among the knots, so that even a long path
+// does not underflow a double. Errors are relative to a member's own signal.
 double light(const LightFamily& family,
              const Member& member,
              double least_loss_per_m,
              double lambda_nm) {
-    // One sign is enough: the number of points depends on its magnitude.
+    // One sign is enough, since the number of points depends on the tilt's magnitude.
     const double tilt = family.tilt ? family.tilt->at(lambda_nm) : 0.0;
     return product_at(*member.source, lambda_nm) *
            std::exp((least_loss_per_m - family.water.attenuation_per_m(lambda_nm)) * member.path_m +
@@ -117,8 +117,8 @@ std::vector<double> knots_of(const Sensor& sensor,
     if (family.tilt) curves.push_back(&*family.tilt);
     std::vector<double> knots = union_of_knots(curves, range);
     // kExactPoints are exact if light falls by at most exp(-8). If it falls further between two
-    // knots, the brighter end is halved until it does not; the rest is as much darker as it is
-    // steeper.
+    // knots, the brighter end is halved until it does not; the rest is darker in proportion as it
+    // is steeper.
     constexpr double kMostFall = 8.0;
     const std::size_t tables_knots = knots.size();
     for (std::size_t i = 0; i + 1 < tables_knots; ++i) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The shapes over wavelength that a scene's light can have, and how to integrate them.
+// The spectra that a scene's light can have, and their integration over wavelength.
 //
-// Light that reaches the camera has travelled a path of length l and met one material:
+// Light that reaches the camera has travelled a path of length l and was reflected by one material:
 //
 //   f(lambda) = source(lambda) exp(-K(lambda) l),      T_c(l) = int f Q_c dlambda
 //
-// source  lamp spectrum, times the floor's reflectance (a highlight: the lamp's alone)
+// source  lamp spectrum, times the floor's reflectance (for a highlight, the lamp's alone)
 // K       loss of the water [1/m]        l  lamp to floor to camera, in water [m]
-// Q_c     response of channel c          T_c  signal that such light gives
+// Q_c     response of channel c          T_c  signal of such light
 //
 // Behind a dispersing port, every wavelength sees a different point of the floor, which may be lit
 // more or less by up to a factor exp(tilt(lambda)): f then includes exp(t tilt), t from -1 to 1.
@@ -34,10 +34,10 @@ struct LightFamily {
     Water water;
     double shortest_path_m = 0.0;
     double longest_path_m = 0.0;
-    std::optional<Spectrum> tilt{};  // none: no port
+    std::optional<Spectrum> tilt{};  // empty without a port
 };
 
-// An integration grid that is exact to the stated error for every member of the family: between
+// An integration grid that is exact to the given error for every member of the family: between
 // neighbouring knots of all tables each factor is a straight line, and Gauss-Legendre with as many
 // points as the interval needs integrates their product. Summed over the intervals, the differences
 // from a rule of kExactPoints points stay under `error` times the channel's T_c, on kExactPaths

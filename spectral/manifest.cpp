@@ -22,7 +22,7 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using OrderedJson = nlohmann::ordered_json;  // as a reader of the file expects it
+using OrderedJson = nlohmann::ordered_json;  // keeps the order in which keys are written
 
 namespace {
 
@@ -30,18 +30,18 @@ constexpr const char* kFormat = "aphotic-manifest-5";
 // A thousand times the size of a manifest of 100 wavelengths.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 
-// A changed digit would give an image with other weights under the same promise, and still have the
-// right type.
+// A changed digit would still have the right type, and give an image with other weights under the
+// same promise.
 constexpr const char* kChecksum = "sha256";
 
-// Titles are the user's: bytes that are not UTF-8 are replaced, not refused.
+// Titles come from the user: bytes that are not UTF-8 are replaced, not refused.
 template <class AnyJson>
 std::string text_of(const AnyJson& json) {
     constexpr int kIndent = 2;
     return json.dump(kIndent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-// Over everything else in the manifest, in any order.
+// The checksum of everything else in the manifest, whatever the order of its keys.
 std::string checksum_of(Json json) {
     json.erase(kChecksum);
     return sha256_of_text(text_of(json));
@@ -79,7 +79,7 @@ class Writer {
     OrderedJson& object_;
 };
 
-// The JSON type of a value, in words.
+// The name of a value's JSON type.
 template <typename T>
 constexpr std::string_view kWords = "a list of numbers";
 template <>
@@ -176,7 +176,7 @@ class Reader {
     std::string where_;
 };
 
-// A frame's name becomes a file name: nothing in it may lead out of the folder.
+// A frame's name becomes a file name, which must not lead out of the folder.
 bool is_plain_name(std::string_view name) {
     const auto is_plain = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -190,7 +190,7 @@ bool is_plain_name(std::string_view name) {
 template <typename T, typename Plain>
 concept Is = std::same_as<std::remove_const_t<T>, Plain>;
 
-// names: of the frames before.
+// names: those of the preceding frames.
 template <typename Visit, Is<ManifestFrame> Frame>
 void fields(const Visit& visit, Frame& frame, std::set<std::string>& names) {
     visit("name", frame.name);
@@ -228,7 +228,7 @@ void fields(const Visit& visit, Quality& quality) {
     visit("amplification", quality.amplification);
 }
 
-// The wavelengths before.
+// The preceding wavelengths.
 struct Before {
     double lambda_nm = 0.0;
     int frames = 0;
@@ -291,7 +291,7 @@ void fields(const Visit& visit, Veil& veil) {
     visit.optional("povray", veil.povray);
 }
 
-// Whether each wavelength's veil is in frames that are there.
+// Whether each wavelength's veil has frames.
 bool has_veil_frames(const Manifest& manifest) {
     if (!manifest.veil || !manifest.veil->povray) return true;
     const ManifestPovrayVeil& veil = *manifest.veil->povray;

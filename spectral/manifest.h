@@ -8,7 +8,7 @@
 //   DIR/manifest.json
 //   DIR/povray/NAME.pov            the scene of frame NAME
 //   DIR/povray/frames/NAME.exr     its image
-//   DIR/povray/logs/NAME.log       what POV-Ray said
+//   DIR/povray/logs/NAME.log       POV-Ray's messages
 //
 // A frame is done once its image has been checked and its checksum recorded; it belongs to the
 // scene whose checksum is recorded with it.
@@ -28,8 +28,8 @@
 
 namespace aphotic {
 
-// The limit of any frame's exponent, and its negative: a double holds every power of two between
-// them.
+// Any frame's exponent lies between the negative of this limit and the limit: a double holds every
+// power of two between them.
 inline constexpr int kMostExposureLog2 = 1000;
 
 struct ManifestFrame {
@@ -40,7 +40,7 @@ struct ManifestFrame {
     [[nodiscard]] bool done() const { return !image_sha256.empty(); }
 };
 
-// A strobe of the rig, and the grid of lamps that stands for its emitter.
+// A strobe of the rig, and the grid of lamps that represents its emitter.
 struct ManifestStrobe {
     std::string name;
     int lamps_across = 1;
@@ -50,19 +50,19 @@ struct ManifestStrobe {
 // A user's scene that the frames show.
 struct ManifestScene {
     std::string file;
-    std::string sha256;                  // of it and its includes
-    std::vector<std::string> materials;  // the names that it uses for reflectances
-    double shortest_path_m = 0.0;        // of the light that it shows
+    std::string sha256;                  // of the scene and its includes
+    std::vector<std::string> materials;  // the names of its reflectances
+    double shortest_path_m = 0.0;        // of the light in view
     double longest_path_m = 0.0;
 };
 
-// How frames differ from the image.
+// The differences between frames and image.
 struct ManifestCamera {
-    // Of the factors for each pixel, as floats (vignetting_path); empty for none.
+    // Of the factors of all pixels, as floats (vignetting_path); empty without vignetting.
     std::string vignetting_sha256{};
 };
 
-// For frames that POV-Ray wrote as PNG (image/frame_format.h).
+// The properties of frames that POV-Ray wrote as PNG (image/frame_format.h).
 struct ManifestPng {
     int bits = 16;
 };
@@ -71,18 +71,18 @@ struct ManifestPng {
 // lobe, in their order, and then by those of light that the water does not scatter, to be
 // subtracted.
 struct ManifestPovrayVeil {
-    int samples = 0;                   // of a ray
+    int samples = 0;                   // per ray
     std::vector<std::string> lobes{};  // of the phase functions
     bool takes_surfaces_off = false;
-    double error = 0.0;  // measured beforehand, relative to the veil; no bound
+    double error = 0.0;  // measured beforehand, relative to the veil; not a bound
 };
 
 // The light that the water scatters into the view: a file next to the frames (veil_path), or
 // POV-Ray frames. If more than the bare floor is in view, the last frame holds no light but a fog
 // of distance fog_m in red: 1 - exp(-D / fog_m), which gives the distance D that each pixel sees.
 struct ManifestVeil {
-    std::string sha256{};  // of the file; empty: not made yet, or rendered by POV-Ray
-    double fog_m = 0.0;    // 0: the bare floor, and no such frame
+    std::string sha256{};  // of the file; empty: not computed yet, or rendered by POV-Ray
+    double fog_m = 0.0;    // 0: bare floor, without such a frame
     std::optional<ManifestPovrayVeil> povray{};
 };
 
@@ -92,7 +92,7 @@ struct ManifestModel {
     std::array<double, kChannels> error{};
 };
 
-// Metadata of images and maps that have it, next to aphotic:promise.
+// Metadata of images and maps with a model error, next to aphotic:promise.
 inline constexpr const char* kModelErrorAttribute = "aphotic:model_error";
 [[nodiscard]] std::string attribute_of(const ManifestModel& model);
 
@@ -106,21 +106,21 @@ struct ManifestSettings {
 //   L(lambda_j) += s F,     S_c += w_cj s F
 struct ManifestLayer {
     std::size_t frame = 0;
-    std::size_t channel = 0;                 // that holds F
+    std::size_t channel = 0;                 // of the sample F
     std::size_t wavelength = 0;              // j
-    double scale = 1.0;                      // s: a power of two, of either sign or 0
+    double scale = 1.0;                      // s: plus or minus a power of two, or 0
     std::array<double, kChannels> weight{};  // w_cj
 };
 
 struct Manifest {
     std::string aphotic_version;
-    std::string povray_version;  // empty: not rendered by us
+    std::string povray_version;  // empty: rendered elsewhere
     std::string rig_title;
-    std::string rig_sha256;  // of the text with its settings
+    std::string rig_sha256;  // of its text, with the settings
     std::optional<ManifestSettings> rig_settings{};
     int width_px = 0;
     int height_px = 0;
-    std::optional<ManifestCamera> camera{};  // none: frames are like the image
+    std::optional<ManifestCamera> camera{};  // none: frames match the image
     std::optional<ManifestPng> png{};        // none: POV-Ray wrote half floats
     // The signal of the lamps themselves: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
@@ -135,19 +135,19 @@ struct Manifest {
     // Why the image has no promise, for a user's scene that voids it; empty if it has one. Quality
     // is then that of the spectra named in the scene, and not written.
     std::vector<std::string> no_promise{};
-    // Everything in the rig that its frames depend on except sources and water, by part, in words
-    // and numbers: frames serve another rig if it is equal (rig/geometry_signature.h).
+    // Everything in the rig that its frames depend on, except sources and water, by part, as text:
+    // frames serve another rig if its signature is equal (rig/geometry_signature.h).
     std::map<std::string, std::string> geometry;
-    std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
+    std::vector<ManifestStrobe> strobes{};  // in the order of every wavelength's flux
     std::optional<ManifestScene> scene{};   // none: the rig's own floor
     std::optional<ManifestVeil> veil{};     // none: the water does not scatter
-    std::optional<ManifestModel> model{};   // none: the same, or not estimated
+    std::optional<ManifestModel> model{};   // none: the same, or no estimate
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
 
     // The direct light's wavelengths, which come first.
     [[nodiscard]] std::size_t direct_frames() const;
-    // Of all frames, in their order.
+    // The layers of all frames, in their order.
     [[nodiscard]] std::vector<ManifestLayer> layers() const;
 
     [[nodiscard]] FrameFormat frame_format() const {
@@ -158,12 +158,12 @@ struct Manifest {
         return quality[channel].promise(frame_error);
     }
 
-    // The signal under which the promise is of it, not of the pixel's own:
+    // The signal below which the promise is relative to this level, not to the pixel's own signal:
     //
-    //   r sum_j |w_cj| 2^(h - e_j)      h  from which power of two on frames have their digits
+    //   r sum_j |w_cj| 2^(h - e_j)      h  the power of two from which frames have full precision
     //
-    // Half floats have them from h = -14, and what is under it rounds by up to 2^-25 all the same:
-    // r = 64 makes little of that. A 16-bit PNG rounds everything by up to 2^-17: h = -6, r = 1.
+    // For half floats h = -14; smaller samples round by up to 2^-25 all the same, which r = 64
+    // makes negligible. A 16-bit PNG rounds everything by up to 2^-17: h = -6, r = 1.
     [[nodiscard]] double black(std::size_t channel) const;
 };
 

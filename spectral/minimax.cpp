@@ -55,7 +55,7 @@ MinimaxFit minimax_fit(const MatrixXd& a, const VectorXd& b, const MinimaxOption
         if (std::sqrt((u * residual.square()).sum()) > options.give_up) break;
         const ArrayXd next = u * residual;
         const double sum = next.sum();
-        if (!(sum > 0.0)) break;  // exact, or NaN: nothing left to weight
+        if (!(sum > 0.0)) break;  // exact, or NaN: no residual to weight
         u = next / sum;
     }
     return best;

@@ -4,12 +4,12 @@
 //
 // By type: a and b of a table of role "water type", water included, as the sources measured or
 // inferred them for Jerlov's types. Their wavelengths are coarse, and their a is below pure water's
-// in the red, so only the dissolved and suspended matter is taken from them, and water from its own
-// tables:
+// in the red, so they provide only the dissolved and suspended matter, and water's own tables the
+// water:
 //
 //   a = a_w + max(0, a_type - a_w)         b_particles = max(0, b_type - b_sw)
 //
-// By constituents, for waters in which everything follows from the chlorophyll (case 1), Chl
+// By constituents, for waters whose optical properties all follow from chlorophyll (case 1), Chl
 // [mg/m^3]:
 //
 //   a   = a_w + 0.06 A(lambda) Chl^0.65 + a_440 exp(-0.014 (lambda - 440))
@@ -18,11 +18,10 @@
 //   b_b/b of the particles = 0.002 + 0.01 (1/2 - log10(Chl)/4)
 //
 // a_w     pure water: 'pure-2016'           b_sw  sea water: seawater_scattering.h
-// A       of phytoplankton, 1 at 440 nm     a_440 of dissolved matter; not told: a fifth of the
-// rest
-//                                                 at 440 nm, as in case 1
-// Chl is from kLeastChlorophyll to kMostChlorophyll, where the formulas were fitted. The
-// particles' phase function is Fournier and Forand's of that b_b/b.
+// A       of phytoplankton, 1 at 440 nm     a_440 of dissolved matter; if not given: a fifth of
+//                                                 the rest at 440 nm, as in case 1
+// Chl is from kLeastChlorophyll to kMostChlorophyll, where the formulas were fitted. The particles'
+// phase function is that of Fournier and Forand for this b_b/b.
 //
 // Absorption: L. Prieur and S. Sathyendranath, Limnology and Oceanography 26, 671 (1981), and A.
 // Morel, Progress in Oceanography 26, 263 (1991), after C. D. Mobley, Light and Water (1994), eq.
@@ -45,10 +44,10 @@ struct Constituents {
     double particles = 1.0;
 };
 
-// a_440 if it is not given.
+// a_440 in case 1, used if none is given.
 [[nodiscard]] double case_1_cdom_440_per_m(double chlorophyll_mg_m3);
 
-// Sea water only, over the range of its index.
+// Sea water alone, over the range of its refractive index.
 [[nodiscard]] Scatterer seawater_scatterer(double salinity_psu, double temperature_c);
 
 // absorption and scattering: those of a water type.

@@ -13,7 +13,7 @@ constexpr unsigned kPanelPoints = 10;
 constexpr double kPanelFall = 4.0;
 constexpr double kSpent = 50.0;
 
-// An interval over which the longest path's light falls by `fall`, and the shortest's by
+// Adds an interval over which the longest path's light falls by `fall`, and the shortest's by
 // `least_fall`.
 void add_interval(double bright_nm,
                   double dark_nm,

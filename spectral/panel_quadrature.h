@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Integrals over wavelength for checks of a plan: no purpose-made grid, and no code shared with the
-// fit's (spectral/light_family.h).
+// Integrals over wavelength for checking a plan, with neither the grid nor the code of the fit
+// (spectral/light_family.h).
 //
 //   int f(lambda) dlambda ~ sum_i width_i f(lambda_i)     f = line line ... line exp(-x)
 //
@@ -12,8 +12,8 @@
 // 300 decades. Over a panel on which x changes by 4, ten points and six lines leave 1e-10.
 //
 // At the bright end of an interval, panels are this short for the longest path. Farther off, where
-// that path has lost e^-50, they suit shorter paths and grow with the distance. They end where the
-// shortest path has lost as much.
+// that path's light has fallen by e^-50, they suit shorter paths and grow with the distance. They
+// end where the shortest path's light has fallen as much.
 #pragma once
 
 #include "spectral/spectrum.h"
@@ -29,8 +29,8 @@ struct QuadratureNode {
     double width_nm = 0.0;
 };
 
-// tables: all except the water's, through which light travels shortest_path_m to longest_path_m.
-// tilt: a further exponent, or null.
+// tables: all except the water's. Light travels shortest_path_m to longest_path_m through the
+// water. tilt: a further exponent, or null.
 [[nodiscard]] std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
                                                         const Water& water,
                                                         double shortest_path_m,
@@ -38,7 +38,7 @@ struct QuadratureNode {
                                                         const Spectrum* tilt,
                                                         WavelengthRange range);
 
-// Ten points each.
+// Ten points in each panel.
 [[nodiscard]] std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> panels);
 
 }  // namespace aphotic

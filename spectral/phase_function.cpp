@@ -123,7 +123,7 @@ double between_rows(const PhaseTable& table, std::size_t i, double psi_rad) {
     return p_a + (p_b - p_a) * (psi_rad - a) / (b - a);
 }
 
-// 2 pi int p sin over a part of that stretch: in the logarithm of the angle, where it has one.
+// 2 pi int p sin over a part of that interval, in the logarithm of the angle unless it is 0.
 double share_between(const PhaseTable& table, std::size_t i, double from_rad, double to_rad) {
     using Gauss = boost::math::quadrature::gauss<double, 15>;
     const auto light = [&](double psi) {
@@ -137,8 +137,8 @@ double share_between(const PhaseTable& table, std::size_t i, double from_rad, do
     return Gauss::integrate(by_log, std::log(from_rad), std::log(to_rad));
 }
 
-// Within an angle no larger than the first row's: the law of the first two rows, with sin(psi) to
-// its second term.
+// The share within an angle up to the first row's, by the law of the first two rows, with sin(psi)
+// to its second term.
 double share_below(const PhaseTable& table, double psi_rad) {
     if (psi_rad <= 0.0) return 0.0;
     const double a = table.angle_rad[0];
@@ -187,7 +187,7 @@ PhaseFunction fournier_forand(double backscatter_ratio) {
     const auto of_slope = [](double slope) {
         return FournierForand{.index = 1.01 + 0.1542 * (slope - 3.0), .slope = slope};
     };
-    double low = 3.01;  // which scatters less back
+    double low = 3.01;  // scatters less backward
     double high = 5.0;
     constexpr int kHalvings = 60;
     for (int i = 0; i < kHalvings; ++i) {

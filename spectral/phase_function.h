@@ -2,10 +2,10 @@
 //
 // The directions of scattered light.
 //
-//   p(psi)   share of the scattered light per solid angle at the angle psi off its way   [1/sr]
+//   p(psi)   share of the scattered light per solid angle at the scattering angle psi     [1/sr]
 //   F(psi)   share within psi:   F(psi) = 2 pi int_0^psi p(psi') sin(psi') dpsi',   F(pi) = 1
 //
-// Henyey and Greenstein, with the mean cosine g:
+// Henyey and Greenstein's, with the mean cosine g:
 //
 //   p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos(psi))^1.5)
 //
@@ -16,10 +16,11 @@
 //       + (1 - D^nu) (3 cos^2(psi) - 1) / (16 pi (D - 1) D^nu)
 //
 // with nu = (3 - mu)/2, s = sin(psi/2), d = 4 s^2 / (3 (n - 1)^2), and D = d at psi = pi. F is
-// known in closed form. fournier_forand() takes one number, the backscattered share, along the line
-// n = 1.01 + 0.1542 (mu - 3) (Mobley, Sundman and Boss 2002).
+// known in closed form. fournier_forand() has one parameter, the backscattered share, along the
+// line n = 1.01 + 0.1542 (mu - 3) (Mobley, Sundman and Boss 2002).
 //
-// Molecular: sea water's own, with the depolarisation ratio delta (0.039, Zhang, Hu and He 2009):
+// Molecular, by sea water itself, with the depolarisation ratio delta (0.039, Zhang, Hu and He
+// 2009):
 //
 //   p = 3 (1 + P cos^2(psi)) / (4 pi (3 + P)),      P = (1 - delta)/(1 + delta)
 //
@@ -38,8 +39,8 @@ struct HenyeyGreenstein {
 };
 
 struct FournierForand {
-    double index = 1.1;   // n, over 1
-    double slope = 3.58;  // mu, over 3
+    double index = 1.1;   // n, above 1
+    double slope = 3.58;  // mu, above 3
 };
 
 struct MolecularScattering {
@@ -59,11 +60,11 @@ struct PhaseFunction {
     [[nodiscard]] double at(double psi_rad) const;
     [[nodiscard]] double share_within(double psi_rad) const;
 
-    // b_b/b: the share over 90 degrees.
+    // b_b/b: the share scattered by more than 90 degrees.
     [[nodiscard]] double backscatter_ratio() const;
 };
 
-// On the line above; the ratio lies within kLeastBackscatter and kMostBackscatter.
+// The function on the line above; the ratio lies within kLeastBackscatter and kMostBackscatter.
 [[nodiscard]] PhaseFunction fournier_forand(double backscatter_ratio);
 inline constexpr double kLeastBackscatter = 0.0005;
 inline constexpr double kMostBackscatter = 0.4;

@@ -53,7 +53,7 @@ void require_angles_and_values(const Table& table) {
             table.name, last, "found no scattering; allowed: three rows or more, not all 0");
 }
 
-// Below the first row the power law is extrapolated; steeper than psi^-2 it has no integral.
+// Below the first row the power law is extrapolated; if steeper than psi^-2, it has no integral.
 void require_integrable(const Table& table) {
     constexpr double kSteepest = -1.95;
     const std::vector<double>& a = table.rows[0].fields;

@@ -2,10 +2,9 @@
 //
 // Phase functions by name or from a file:
 //
-//   angle_deg,phase_function_per_sr        0 or more, up to 180, increasing; 0 or more, of any
-//   scale
+//   angle_deg,phase_function_per_sr        0 to 180, increasing; 0 or more, of any scale
 //
-// Built in are 'petzold' (the average particle), 'petzold-clear', 'petzold-coast' and
+// The built-in ones are 'petzold' (the average particle), 'petzold-clear', 'petzold-coast' and
 // 'petzold-harbour', which include the water's scattering, and 'sea-water', a formula.
 #pragma once
 

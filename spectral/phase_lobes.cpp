@@ -52,7 +52,7 @@ struct Share {
     double share;
 };
 
-// Empty for a function that is not a sum of a few lobes.
+// Empty for a function that is not exactly a sum of a few lobes.
 std::vector<Share> exact_shares(const PhaseFunction& phase, std::vector<PhaseFunction>& lobes) {
     if (const auto* hg = std::get_if<HenyeyGreenstein>(&phase.kind)) {
         return {{.lobe = place_of(henyey_greenstein(hg->g), lobes), .share = 1.0}};
@@ -67,12 +67,12 @@ std::vector<Share> exact_shares(const PhaseFunction& phase, std::vector<PhaseFun
     return {};
 }
 
-// For one phase function: least squares of sum_m share_m q_m / p - 1.
+// The fit of one phase function: least squares of sum_m share_m q_m / p - 1.
 class Fit {
   public:
     Fit(const PhaseFunction& phase, const Eigen::ArrayXd& angle_rad)
         : angle_rad_(angle_rad), over_(angle_rad.size()) {
-        constexpr double kLeast = 1e-6;  // of the largest: a table may have 0
+        constexpr double kLeast = 1e-6;  // of the largest, since a table may have zeros
         for (Eigen::Index i = 0; i < over_.size(); ++i) over_[i] = phase.at(angle_rad[i]);
         over_ = over_.max(kLeast * over_.maxCoeff()).inverse().eval();
     }
@@ -120,7 +120,7 @@ double error_of(std::span<const Fit> fits, std::span<const PhaseFunction> lobes)
     return error;
 }
 
-// The best of a coarse choice.
+// The best lobe of a coarse grid.
 std::optional<PhaseFunction> next_lobe(std::span<const Fit> fits,
                                        std::vector<PhaseFunction> lobes) {
     constexpr double kStep = 0.05;
@@ -146,7 +146,7 @@ std::optional<PhaseFunction> next_lobe(std::span<const Fit> fits,
     return best;
 }
 
-// Moves the lobes from the first on, one at a time, by steps that halve.
+// Moves lobes, beginning with `first`, one at a time, by steps that halve.
 void refine(std::span<const Fit> fits, std::size_t first, std::vector<PhaseFunction>& lobes) {
     constexpr double kFirstStep = 0.04;
     constexpr double kLastStep = 1e-3;

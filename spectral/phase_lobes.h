@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Phase functions as sums of lobes that a renderer has:
+// Phase functions as sums of lobes available in a renderer:
 //
 //   p(psi) ~ sum_m share_m q_m(psi)        q_m  Henyey and Greenstein's of any g, and molecular
 //                                               scattering without depolarisation, Rayleigh's
@@ -14,8 +14,8 @@
 // function than 4 to 10 %. The rendered lobes then partly cancel, but their rounding does not: the
 // largest sum |share_m| q_m / p is the amplification, which the fit limits.
 //
-// Outside the range of angles nothing is fitted. All phase functions of a water share their lobes,
-// so that each is rendered once.
+// Angles outside the range are not fitted. All phase functions of a water share their lobes, so
+// that each is rendered once.
 #pragma once
 
 #include "spectral/phase_function.h"
@@ -32,7 +32,7 @@ inline constexpr double kLobesSuffice = 5e-4;
 struct PhaseLobes {
     std::vector<PhaseFunction> lobes{};        // HenyeyGreenstein, or molecular of ratio 0
     std::vector<std::vector<double>> share{};  // by phase function, by lobe
-    // The largest over all phase functions and angles.
+    // The largest values over all phase functions and angles.
     double error = 0.0;
     double amplification = 1.0;
 };

@@ -7,7 +7,7 @@
 //
 // and the same for the veil, if it has frames.
 //
-// S_c  signal of channel c      L  spectral radiance      F_j  what the frame holds, in its channel
+// S_c  signal of channel c      L  spectral radiance      F_j  the frame's sample, in its channel
 #pragma once
 
 #include "image/camera_image.h"
@@ -21,29 +21,29 @@ namespace aphotic {
 
 // The effect of sources and water on light at one wavelength, apart from geometry: a pixel's
 // radiance is a sum of flux reflectance exp(-attenuation path), and of flux exp(-attenuation path)
-// where something has a highlight.
+// for highlights.
 struct SourceLight {
     double attenuation_per_m = 0.0;
     std::vector<double> flux{};         // of each strobe, its power included
-    std::vector<double> reflectance{};  // of the floor, then of each further material
+    std::vector<double> reflectance{};  // of the floor, then of each other material
 };
 
-// For a veil that POV-Ray renders, in its own frames: one for each lobe of the water's phase
+// A veil that POV-Ray renders, in frames of its own, one for each lobe of the water's phase
 // functions (spectral/phase_lobes.h).
 struct PlannedVeil {
-    std::vector<double> scattering_per_m{};  // by lobe; of either sign, as the sum allows
+    std::vector<double> scattering_per_m{};  // by lobe; may be negative
     std::array<double, kChannels> weight{};  // of the veil's radiance
     int exposure_log2 = 0;
-    double radiance_bound = 0.0;  // relative to the level it is exposed for
+    double radiance_bound = 0.0;  // relative to the exposed level
 };
 
 struct PlannedWavelength {
     double lambda_nm = 0.0;
     std::array<double, kChannels> weight{};  // w_cj
-    std::size_t frame = 0;                   // which of the plan's frames, in order
+    std::size_t frame = 0;                   // its place among the plan's frames
     std::size_t channel = 0;                 // of the frame, in the order of kChannelNames
-    double index_nm = 0.0;                   // whose refractive indices the frame has
-    SourceLight light{};                     // with which the frame is rendered
+    double index_nm = 0.0;                   // of the frame's refractive indices
+    SourceLight light{};                     // the light of the rendered frame
     int exposure_log2 = 0;                   // e_j
     double radiance_bound = 0.0;             // of L(lambda_j) in view
     std::optional<PlannedVeil> veil{};       // none: POV-Ray renders no veil

@@ -85,8 +85,8 @@ std::vector<double> paths_of(const LightFamily& family) {
     return paths_m;
 }
 
-// By member: signals in R, G, B and all its light; the rule's result from its frames, and the same
-// without signs.
+// By member: signals in R, G, B and all its light; the rule's result from its frames, and the sum
+// of absolute values.
 struct Members {
     Matrix signals;
     Matrix found;
@@ -164,7 +164,7 @@ std::array<RuleQuality, kChannels> certified_quality(const Sensor& sensor,
             const Real right = members.signals(i, c);
             if (response(i) > kBlind * best) {
                 const Real off = std::abs(members.found(i, c) / right - 1.0L);
-                // NaN is the largest of errors.
+                // NaN counts as the largest error.
                 error = std::isnan(off) ? kInfinite : std::max(error, off);
                 amplification = std::max(amplification, members.amplified(i, c) / right);
             } else if (members.amplified(i, c) > kLeak * best * light(i)) {

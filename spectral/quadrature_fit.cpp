@@ -19,7 +19,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kGridError = 1e-9;
-// Rows of a fit: enough paths to see every swing of the error, yet few enough for ten materials.
+// Rows of a fit: enough paths to resolve every oscillation of the error, yet few enough for ten
+// materials.
 constexpr int kMostPaths = 24;
 constexpr int kLeastPaths = 10;
 constexpr int kRows = 240;
@@ -31,13 +32,13 @@ constexpr int kQuickIterations = 8;
 // Weights are penalised more and more until the promise no longer improves.
 constexpr std::array kRidges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
-// From 0 to 1, both included; Chebyshev's spacing, denser towards the ends, where a fit tends to
-// err most, or even.
+// From 0 to 1, both included, at Chebyshev's spacing, denser towards the ends, where a fit tends to
+// err most, or at even spacing.
 ArrayXd chebyshev(int count) {
     return 0.5 - 0.5 * (ArrayXd::LinSpaced(count, 0.0, std::numbers::pi)).cos();
 }
 
-// A share of the way from the shortest to the longest path, in even ratios, since paths may reach
+// Paths at shares of the way from the shortest to the longest, in even ratios, since paths range
 // from metres to the horizon.
 ArrayXd paths_at(const LightFamily& family, const ArrayXd& share) {
     if (!(family.shortest_path_m > 0.0)) return share * family.longest_path_m;
@@ -148,7 +149,7 @@ QuadratureFitter::Sample QuadratureFitter::sample(ArrayXd paths_m,
         sample.signals.row(i).setZero();
     }
     sample.response = sample.signals.colwise() / sample.light;
-    sample.response = (sample.response > 0.0).select(sample.response, 0.0);  // 0/0 is dark
+    sample.response = (sample.response > 0.0).select(sample.response, 0.0);  // 0/0 counts as dark
     return sample;
 }
 
@@ -183,7 +184,7 @@ QuadratureFitter::View QuadratureFitter::view_of(const MatrixXd& light,
     for (Index i = 0; i < response.size(); ++i) {
         if (response(i) > kBlind * best) {
             seen.push_back(i);
-        } else if (light.cols() > 0 && sample.light(i) > 0.0) {  // Eigen's rows would step off null
+        } else if (light.cols() > 0 && sample.light(i) > 0.0) {  // Eigen would offset null
             view.unseen = view.unseen.max(light.row(i).transpose().array() / sample.light(i) *
                                           grid_width_nm_.sum());
         }
@@ -258,14 +259,14 @@ FittedRule QuadratureFitter::fit(std::span<const FrameLight> frames, double fram
         }
         const MatrixXd rows = fitted.usable();
         const MatrixXd check = checking.usable();
-        rule.quality[c] = {.error = 1.0, .amplification = 0.0};  // of no weights at all
+        rule.quality[c] = {.error = 1.0, .amplification = 0.0};  // of zero weights
         double best = 1.0 + kFreeAmplification * frame_error;
         for (const double ridge : kRidges) {
             const MinimaxFit fit = minimax_fit(
                 rows, VectorXd::Ones(rows.rows()), {.iterations = kIterations, .ridge = ridge});
             RuleQuality quality = quality_of(check, fit.x);
             quality.error += tilt_shape_error();
-            // Amplification that costs nothing is no reason to penalise weights.
+            // Amplification within the free limit is no reason to penalise weights.
             const double cost =
                 quality.error + std::max(quality.amplification, kFreeAmplification) * frame_error;
             if (!(cost < best)) continue;
@@ -330,7 +331,7 @@ double QuadratureFitter::quick_cost(std::span<const Column* const> columns,
         const RuleQuality quality = quality_of(rows, fit.x);
         const double cost =
             quality.error + std::max(0.0, quality.amplification - kFreeAmplification) * frame_error;
-        // Not a number is the worst of costs.
+        // NaN counts as the worst cost.
         if (!(cost <= give_up)) return std::numeric_limits<double>::infinity();
         hint[c] = fit.weights;
         worst = std::max(worst, cost);
@@ -340,8 +341,8 @@ double QuadratureFitter::quick_cost(std::span<const Column* const> columns,
 
 namespace {
 
-// Lines may be too narrow to be found by their shares: every stretch of light gets kLeastPlaces, as
-// far as it has nodes, at even shares of its light.
+// Lines may be too narrow to be found by their shares: every interval of light gets kLeastPlaces,
+// if it has that many nodes, at even shares of its light.
 void add_places_in_lines(const ArrayXd& share, std::vector<Index>& places) {
     constexpr int kLeastPlaces = 3;
     constexpr double kNoLight = 1e-6;
@@ -374,7 +375,7 @@ void add_places_in_lines(const ArrayXd& share, std::vector<Index>& places) {
 
 std::vector<double> QuadratureFitter::places_of_light(int count) const {
     const Index nodes = grid_lambda_nm_.size();
-    std::vector<ArrayXd> shares;  // what each node adds to a signal, by member and channel
+    std::vector<ArrayXd> shares;  // of each node in a signal, by member and channel
     const Index paths = fitting_.path_m.size();
     Index row = 0;
     for (Index s = 0; s < grid_sources_.cols(); ++s) {
@@ -393,7 +394,7 @@ std::vector<double> QuadratureFitter::places_of_light(int count) const {
             }
         }
     }
-    ArrayXd most = ArrayXd::Zero(nodes);  // of the member that has most
+    ArrayXd most = ArrayXd::Zero(nodes);  // largest share of any member
     for (const ArrayXd& share : shares) most = most.max(share);
     // Density sqrt(share / width) over a width: sqrt(share width).
     ArrayXd cumulative(nodes);
@@ -421,7 +422,7 @@ std::vector<QuadratureFitter::PathError> QuadratureFitter::errors_over_path(
     const FittedRule& rule, std::span<const FrameLight> frames, std::size_t source) const {
     const MatrixXd light = light_of(checking_, frames);
     const Index paths = checking_.path_m.size();
-    // The middle tilt, which is none.
+    // The middle tilt, which is 0.
     const auto tilts = static_cast<Index>(checking_.tilts.size());
     const Index first = (static_cast<Index>(source) * tilts + tilts / 2) * paths;
     std::vector<PathError> errors;

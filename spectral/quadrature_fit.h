@@ -8,9 +8,9 @@
 //   amplification  a_c = max over the family of sum_j |w_cj| f_j / T_c
 //   promise        e_c + a_c frame_error
 //
-// f_j   what the frame of wavelength j holds of a member of the family (FrameLight)
+// f_j   light of a member of the family in the frame of wavelength j (FrameLight)
 // T_c   the member's signal in channel c, integrated exactly (reference_grid)
-// frame_error   the relative error of what a frame holds, for the most part its half floats'
+// frame_error   the relative error of a frame's samples, mostly from half floats
 //
 // A pixel's light is a sum of members with non-negative factors, so no pixel errs by more than the
 // promise, relative to its own signal. Fitted weights make e_c as small as possible
@@ -18,16 +18,17 @@
 // they are penalised.
 //
 // A channel may be blind to a member: its response to it is less than kBlind, light for light, of
-// its response to the member that it sees best. Such light is ignored, provided that it gets no
-// weight either: a wavelength at which it shines has none in that channel. Nor has a wavelength so
+// its response to the member that it sees best. Such light is ignored, provided that it has no
+// weight either: a wavelength of such light has weight 0 in that channel. So has a wavelength so
 // dark that it would need a weight over kMostWeight times the channel's whole response to
 // contribute.
 //
-// Behind a port, pixels vary along curves of their own, of which the family's tilt is the largest:
-// kTiltShape of half its span is added to the error for their shapes.
+// Behind a port, each pixel's light varies over wavelength along a curve of its own, and the
+// family's tilt is the largest. For the curves' shapes, kTiltShape of half its span is added to the
+// error.
 //
-// The frames need not show the family's own water, lamps or materials: any light that came by the
-// same geometry serves as well as it spans the family.
+// The frames need not show the family's own water, lamps or materials: any light of the same
+// geometry serves as well as it spans the family.
 #pragma once
 
 #include "spectral/light_family.h"
@@ -79,11 +80,11 @@ class QuadratureFitter {
   public:
     QuadratureFitter(const Sensor& sensor, const LightFamily& family, WavelengthRange range);
 
-    // A frame with the family's own water, lamps and materials.
+    // The light of a frame with the family's own water, lamps and materials.
     [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
 
-    // The weights, and their error on kCheckPaths paths that the fit did not use, and behind a port
-    // on twice as many tilts.
+    // The weights, and their error, determined on kCheckPaths paths that the fit did not use and,
+    // behind a port, on twice as many tilts.
     [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
 
     // The same for given weights; the error is infinite where a channel's weights give it light to
@@ -91,12 +92,12 @@ class QuadratureFitter {
     [[nodiscard]] std::array<RuleQuality, kChannels> judge(
         std::span<const WeightedWavelength> rule, std::span<const FrameLight> frames) const;
 
-    // For trying many frames: a frame's light relative to the signals of the fit's members, and how
-    // well a fit to such columns can do, in few steps. The cost is the error; amplification beyond
+    // For trying many frames: a frame's light relative to the signals of the fit's members, and the
+    // cost of a fit to such columns, in few steps. The cost is the error; amplification beyond
     // kFreeAmplification counts with its effect on frame_error. A cost known to exceed give_up is
     // returned as infinite. `hint` carries information from one trial to the next.
     struct Column {
-        std::array<Eigen::MatrixXd, kChannels> light;  // of one frame, or of a column each
+        std::array<Eigen::MatrixXd, kChannels> light;  // of one frame, or one column per frame
     };
     using Hint = std::array<Eigen::ArrayXd, kChannels>;
     [[nodiscard]] Column column_of(std::span<const FrameLight> frames) const;
@@ -110,14 +111,14 @@ class QuadratureFitter {
                                              const Column& candidates,
                                              const Hint& hint) const;
 
-    // Some `count` wavelengths where the relevant light is: nodes of the reference grid, spaced so
-    // that equal shares lie between them of the root of each node's contribution to the signal of
-    // the member to which it contributes most. The root spreads them: nearly all the light of a
-    // long path may be in a few nm. A line too narrow for that, of a lamp or of a channel's
-    // response to it, gets three more.
+    // About `count` wavelengths where the relevant light is: nodes of the reference grid. Each node
+    // counts with the root of its contribution to the signal of the member to which it contributes
+    // most, and equal shares of the sum lie between wavelengths. The root spreads them: nearly all
+    // the light of a long path may be in a few nm. A line too narrow for that, of a lamp or of a
+    // channel's response to it, gets three more.
     [[nodiscard]] std::vector<double> places_of_light(int count) const;
 
-    // The error over path length, by source and channel: for plots.
+    // The error over path length, by source and channel, for plots.
     struct PathError {
         double path_m;
         std::array<double, kChannels> error{};
@@ -133,23 +134,23 @@ class QuadratureFitter {
 
   private:
     // Members of the family and their signals: for every source, tilt and path, in this order. All
-    // are scaled by exp(K_0 l), K_0 the least loss in the range, so that no path is too long for a
-    // double: only ratios of a member to itself are used.
+    // are scaled by exp(K_0 l), K_0 the least loss in the range, so that even a long path does not
+    // underflow a double. Only ratios of a member to itself are used.
     struct Sample {
         Eigen::ArrayXd path_m;
         std::vector<double> tilts;
         Eigen::ArrayXXd signals{};  // members by channels
         Eigen::ArrayXXd
             response{};          // the same, relative to all of a member's light; 0: it has none
-        Eigen::ArrayXd light{};  // all of a member's, int f dlambda
+        Eigen::ArrayXd light{};  // all light of a member, int f dlambda
     };
     // The frames as one channel sees them: their light relative to the channel's response to each
     // member, and which frames it may use.
     struct View {
         Eigen::MatrixXd relative{};
         double whole_response = 0.0;  // int Q_c dlambda
-        // By frame: its light over the range, relative to all light of a member to which the
-        // channel is blind; the largest.
+        // By frame: the largest ratio of its light over the range to all light of a member to which
+        // the channel is blind.
         Eigen::ArrayXd unseen;
         std::vector<bool> is_usable{};
 
@@ -179,8 +180,8 @@ class QuadratureFitter {
 
 inline constexpr int kCheckPaths = 161;
 // A source's light under kDarkness of the brightest source's on the same path is ignored, a
-// channel's response to a member under kBlind of its best counts as none, and weights that sum to
-// less than kLeak of its best over all of the range count as none for that member.
+// channel's response to a member under kBlind of its best counts as 0, and weights that sum to less
+// than kLeak of its best over the whole range count as 0 for that member.
 inline constexpr double kDarkness = 1e-200;
 inline constexpr double kBlind = 1e-50;
 inline constexpr double kLeak = 1e-40;

@@ -7,8 +7,8 @@
 //              + n8 / l^2 + n9 / l^3
 //   S  salinity [psu]    T  temperature [C]    l  wavelength [nm]    n0..n9 'quan-fry-1995'
 //   Fitted to 400-700 nm, 0-35 psu, 0-30 C at atmospheric pressure, to about 1.5e-5.
-//   Taken here for 200-1100 nm, where Huibers found it to hold for water, 0-40 psu (n is
-//   linear in S) and -2-35 C, which is all that the sea has. Outside: InputError.
+//   Used here for 200-1100 nm, where Huibers found it to hold for water, 0-40 psu (n is
+//   linear in S) and -2-35 C, the range found in the sea. Outside: InputError.
 //   X. Quan and E. S. Fry, Applied Optics 34(18), 3477-3480 (1995).
 //   P. D. T. Huibers, Applied Optics 36(16), 3785-3787 (1997).
 //
@@ -56,7 +56,7 @@ class Glass {
 // bk7, fused-silica, sapphire, pmma, polycarbonate.
 [[nodiscard]] Glass builtin_glass(std::string_view name);
 
-// The range of a built-in table, from its "# range: A to B nm".
+// The range that a built-in table states in "# range: A to B nm".
 [[nodiscard]] WavelengthRange stated_range(const Table& table);
 
 }  // namespace aphotic

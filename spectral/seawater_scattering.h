@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Scattering by sea water itself, without particles: fluctuations of its density and of its salt.
+// Scattering by sea water itself, without particles, by fluctuations of density and salinity.
 //
 //   b = (8 pi / 3) beta_90 (2 + delta)/(1 + delta),      beta_90 = beta_density + beta_salt
 //   beta_density = pi^2/2 l^-4 (rho dn^2/drho)^2 k T beta_T f
@@ -11,9 +11,9 @@
 // beta_T   isothermal compressibility       a_w   activity of the water
 // delta    depolarisation ratio, 0.039      f     (6 + 6 delta)/(6 - 7 delta)
 //
-// Half of it goes back; its phase function is MolecularScattering. Stated accuracy: 2 % of the
-// available measurements, for 0-40 psu and 0-30 C at atmospheric pressure; the index is that of
-// refractive_index.h, with its range.
+// Half of it is backscattered; its phase function is MolecularScattering. Stated accuracy: 2 % of
+// the available measurements, for 0-40 psu and 0-30 C at atmospheric pressure; the index and its
+// range are those of refractive_index.h.
 //
 // X. Zhang, L. Hu, M.-X. He, "Scattering by pure seawater: effect of salinity", Optics Express 17,
 // 5698 (2009), with X. Zhang and L. Hu, ibid., 1671; compressibility: Millero 1980, density: UNESCO

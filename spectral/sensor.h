@@ -7,11 +7,11 @@
 //   energy response    Q_c = q_c
 //   quantum response   Q_c = q_c lambda / (h c)            photons per joule
 //   filter and sensor  Q_c = f_c eta lambda / (h c)        electrons per joule
-//   mono               Q_c = eta lambda / (h c)            the same of all three channels
+//   mono               Q_c = eta lambda / (h c)            the same in all three channels
 //
 // S_c     signal of channel c
 // L       spectral radiance
-// q_c     response table; the table's owner says whether it is per energy or per photon
+// q_c     response table; its owner states whether it is per energy or per photon
 // f_c     transmittance of the channel's filter                 [1]
 // eta     quantum efficiency of the sensor behind the filters   [1]
 // lambda  wavelength; nm in the interface, m in the formula
@@ -48,7 +48,8 @@ class Sensor {
     // Q_c. Throws InputError outside range().
     [[nodiscard]] double response(int channel, double lambda_nm) const;
 
-    // All tables behind the responses, valid during the sensor's life: for range checks and knots.
+    // All tables behind the responses, for range checks and knots; valid during the sensor's
+    // lifetime.
     [[nodiscard]] std::vector<const Spectrum*> curves() const;
 
     // The wavelengths that all of them cover.

@@ -130,7 +130,7 @@ void require_cover(std::span<const Spectrum* const> curves, WavelengthRange rang
             gap_text(covered, range),
             range.first_nm,
             range.last_nm);
-        // Strobes may share a lamp: once is enough.
+        // Strobes may share a lamp, which is reported once.
         if (faults.find(fault) == std::string::npos) faults += fault;
     }
     if (!faults.empty()) throw InputError(faults + remedy_text(common_range(curves), range));

@@ -5,10 +5,10 @@
 //   f(lambda) = f_i + (f_{i+1} - f_i) (lambda - lambda_i) / (lambda_{i+1} - lambda_i)
 //
 // lambda  wavelength [nm], lambda_i strictly increasing
-// f       any quantity; its unit belongs to whoever owns the curve
+// f       any quantity, in the unit that the curve's owner defines
 //
-// f(lambda_i) = f_i exactly. Nothing is extrapolated: asking outside [first_nm, last_nm] is an
-// InputError that names the curve.
+// f(lambda_i) = f_i exactly. Nothing is extrapolated: a wavelength outside [first_nm, last_nm] is
+// an InputError that names the curve.
 #pragma once
 
 #include <optional>
@@ -39,8 +39,8 @@ struct CurveSource {
 class Spectrum {
   public:
     // name identifies the curve in messages, such as "water absorption 'pope-fry-1997'". source:
-    // empty for a curve that the program made. Throws InputError unless there are at least two
-    // knots, all finite and increasing.
+    // empty for a computed curve. Throws InputError unless there are at least two knots, all finite
+    // and increasing.
     Spectrum(std::string name,
              std::vector<double> lambda_nm,
              std::vector<double> values,
@@ -50,8 +50,8 @@ class Spectrum {
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const std::optional<CurveSource>& source() const { return source_; }
-    // The user's name for it: the built-in table's name, or the file's without its folder; for a
-    // curve that the program made, its name.
+    // The name that the user knows: the built-in table's, or the file's without its folder; for a
+    // computed curve, its own.
     [[nodiscard]] std::string short_name() const;
     [[nodiscard]] WavelengthRange range() const;
     [[nodiscard]] std::span<const double> lambda_nm() const { return lambda_nm_; }

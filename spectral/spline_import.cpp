@@ -25,9 +25,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kSplineForms{
     "linear_spline", "cubic_spline", "natural_spline", "quadratic_spline"};
 constexpr std::string_view kArraySize = "36";
-constexpr double kArrayFirst_nm = 380.0;  // as SpectralRender has it
+constexpr double kArrayFirst_nm = 380.0;  // as in SpectralRender
 constexpr double kArrayStep_nm = 10.0;
-constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
+constexpr std::size_t kMaxVector = 5;   // the longest in POV-Ray
 constexpr std::size_t kMostShown = 80;  // of a string, in a message
 constexpr int kMaxDepth = 100;          // of nested brackets
 
@@ -117,7 +117,7 @@ class Parser {
         std::string_view behind = rest_;
         const std::size_t digit = rest_[0] == '.' ? 1 : 0;
         if (digit < rest_.size() && kDigits.find(rest_[digit]) != std::string_view::npos) {
-            // A value out of range is not an error here: it may be in a place that nobody reads.
+            // A value out of range is not an error here: it may be in a part that is not read.
             token_.kind = Token::Kind::Number;
             token_.number = read_leading_number<double>(behind).value_or(
                 std::numeric_limits<double>::quiet_NaN());
@@ -277,7 +277,7 @@ class Parser {
 
     double sum(int depth) { return chain(true, depth); }
 
-    // Of + and -, or of * and / within it.
+    // A chain of + and -, or of * and / within one.
     double chain(bool is_sum, int depth) {
         const auto next = [&] { return is_sum ? chain(false, depth) : factor(depth); };
         double result = next();
@@ -314,7 +314,7 @@ class Parser {
     const std::string& file_;
     const std::string& only_;
     std::string text_;
-    std::string_view rest_;  // of it, behind the token
+    std::string_view rest_;  // of the text, after the token
     std::size_t line_ = 1;
     Token token_;
     std::string where_;  // the spectrum that is being read
@@ -384,7 +384,7 @@ std::string spline_table(const std::string& file_name,
     for (const SplineKnot& knot : spectrum.knots) {
         text += fmt::format("{},{}\n", knot.lambda_nm, knot.value);
     }
-    // The file's name comes from outside and stands in the table.
+    // The file's name is untrusted input and becomes part of the table.
     const std::string table_name = spline_table_name(spectrum.identifier);
     static_cast<void>(curves_of(parse_table(table_name, text), role));
     return text;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Spectra as POV-Ray users share them, in its scene language: splines over wavelength, as for
-// Lightsys, and the arrays of SpectralRender, whose 36 values are at 380, 390, ... 730 nm.
+// Spectra that POV-Ray users share in its scene language: splines over wavelength, as for Lightsys,
+// and the arrays of SpectralRender, whose 36 values are at 380, 390, ... 730 nm.
 //
 //   #declare RS_Clay = spline { linear_spline  380, 0.021  400, <0.03, 0.03, 0.03>  730, 8.4/100 }
 //   #declare D_Clay  = array[36] { 0.021, 0.024, ... }

@@ -171,8 +171,9 @@ constexpr std::string_view kDaylightsLoss =
     "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
     "docs/reference/water.md";
 
-// The most common mistake, and one that no image shows, so it is reported if the table itself says
-// so. Titles are not checked, since they may name what a table was derived from.
+// This mistake is the most common one, and no image shows it, so it is reported if the table's own
+// text indicates it. Titles are not checked, since they may name the data that a table was derived
+// from.
 void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
     if (!is_of_water(rule.role)) return;
     for (const std::string& column : table.columns) {

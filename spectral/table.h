@@ -10,7 +10,7 @@
 // byte order mark are ignored. Numbers use a decimal point whatever the locale. Every error is an
 // InputError "file:line: what was found; allowed: ...".
 //
-// The role of a curve determines the header rows and the values that are allowed:
+// The role of a curve determines the header rows and values allowed:
 //
 //   WaterAbsorption      wavelength_nm,absorption_per_m        0 or more      [1/m]
 //   WaterScattering      wavelength_nm,scattering_per_m        0 or more      [1/m]
@@ -87,14 +87,14 @@ inline constexpr std::array kCurveRoles{CurveRole::WaterAbsorption,
                                         CurveRole::QuantumEfficiency,
                                         CurveRole::ColourMatching};
 
-// "water absorption" and so on: in messages, and in "# role:" of the built-in tables.
+// "water absorption" and so on, as in messages and in "# role:" of the built-in tables.
 [[nodiscard]] std::string_view role_name(CurveRole role);
 [[nodiscard]] std::optional<CurveRole> role_named(std::string_view name);
 
 // One curve per column after the first, named such as "sensor response 'nikon-d5100' (red)".
 [[nodiscard]] std::vector<Spectrum> curves_of(const Table& table, CurveRole role);
 
-// The roles that the table could have; an InputError if there are none.
+// The roles that the table can have; an InputError if it has no possible role.
 [[nodiscard]] std::vector<CurveRole> roles_of(const Table& table);
 
 }  // namespace aphotic

@@ -17,11 +17,11 @@ constexpr double kLeastDistanceNm = 0.01;
 constexpr int kFewEnough = 3;
 // More wavelengths are tried at once if a first sweep is this far from the budget.
 constexpr double kHopeless = 30.0;
-// The same after the whole search, where a second one might still help.
+// The same limit after the whole search, where a second search might still help.
 constexpr double kFarOff = 3.0;
 constexpr int kMany = 6;
 constexpr double kMiddle = 0.5;
-// A plan of fewer wavelengths is as good if it errs by less than this, far below any frame's
+// A plan of fewer wavelengths is as good if its error is below this, far below any frame's
 // rounding.
 constexpr double kNothing = 1e-8;
 
@@ -72,7 +72,8 @@ class Search {
         }
     }
 
-    // Starting wavelengths: evenly over the light, or over the range; offset: of the first, 0 to 1.
+    // Starting wavelengths, spread evenly over the light, or over the range; offset: that of the
+    // first, 0 to 1.
     [[nodiscard]] std::vector<double> over_the_light(int count, double offset) const {
         std::vector<double> lambda_nm;
         for (int j = 0; j < count; ++j) {
@@ -254,7 +255,7 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
     const double room = (range.last_nm - range.first_nm) / (2.0 * kLeastDistanceNm);
     count = std::max(1, static_cast<int>(std::min<double>(count, room)));
     Search search(fitter, range, frame_error, given);
-    // No light at all: any wavelength shows that.
+    // Without any light, any wavelength will do.
     if (!search.has_candidates()) return {0.5 * (range.first_nm + range.last_nm)};
     search.start(search.over_the_light(count, kMiddle));
     search.sweep();
@@ -272,7 +273,7 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
     };
     improve_from(count <= kFewEnough ? search.best_of_all(count)
                                      : search.over_the_light(count, kMiddle));
-    // Many wavelengths take long, so further starts are only for those that just miss.
+    // A search with many wavelengths takes long, so further starts are only for near misses.
     const bool is_settled = least <= budget || least > kFarOff * budget;
     if (count > kMany && is_settled) return best;
     improve_from(search.over_the_range(count, kMiddle));
@@ -285,7 +286,8 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
 FittedRule plan_wavelengths(const QuadratureFitter& fitter,
                             WavelengthRange range,
                             const PlanTarget& target) {
-    // The error that the frames leave to the wavelengths, if the weights do not amplify it.
+    // The part of the error budget that frames leave to the wavelengths, if the weights do not
+    // amplify it.
     constexpr double kLeastShare = 0.01;
     const double budget =
         std::max(kLeastShare * target.frame_error, target.tolerance - target.frame_error);

@@ -4,7 +4,7 @@
 //
 // For n = step, 2 step, ... wavelengths it looks for those whose fitted weights
 // (spectral/quadrature_fit.h) err least over the family of light, and stops at the first n whose
-// promise is within the tolerance. If fewer wavelengths of a frame do as well as all of them, as in
+// promise is within the tolerance. If fewer wavelengths than the frames hold do as well, as in
 // clear water, where one suffices, it takes the fewer.
 //
 // The search starts from wavelengths spread evenly over the light and over the range, and for up to
@@ -25,21 +25,21 @@ namespace aphotic {
 struct PlanTarget {
     double tolerance = 1e-3;
     double frame_error = kFrameError;
-    int step = 3;  // wavelengths that a frame holds
+    int step = 3;  // wavelengths per frame
     int most = 24;
 };
 
 inline constexpr int kCandidates = 64;
 inline constexpr double kFinestStepNm = 0.125;
 
-// If no rule of up to target.most wavelengths achieves the tolerance, the one with the best
-// promise, which says so.
+// If no rule of up to target.most wavelengths achieves the tolerance, the result is the one with
+// the best promise, which shows it.
 [[nodiscard]] FittedRule plan_wavelengths(const QuadratureFitter& fitter,
                                           WavelengthRange range,
                                           const PlanTarget& target);
 
-// The best `count` wavelengths in addition to `given`, whose frames exist already. If a first look
-// finds them far from an error of `budget`, the search stops there.
+// The best `count` wavelengths in addition to `given`, whose frames exist already. If the first
+// trial is far from an error of `budget`, the search stops there.
 [[nodiscard]] std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
                                                    WavelengthRange range,
                                                    int count,
