@@ -45,7 +45,7 @@ std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera) {
 
 double port_reach_m(const Rig& rig) {
     if (!rig.camera.port) return 0.0;
-    // Rays reach farthest at the corners, and slightly farther in blue or red than between.
+    // Rays reach farthest at the corners, and slightly farther in blue or red than in between.
     constexpr double kRoom = 1.05;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     double reach_m = 0.0;
@@ -112,7 +112,7 @@ LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
         spacing_m =
             std::min(spacing_m, spacing_for(throw_m, bend(K_per_m * throw_m, m_of_floor + 1.0)));
     }
-    constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
+    constexpr double kMostLamps = 1e6;  // far more than a scene can hold: refused later
     const auto lamps = [&](double size_m) {
         return static_cast<int>(std::clamp(std::ceil(size_m / spacing_m), 1.0, kMostLamps));
     };

@@ -39,14 +39,14 @@ struct Plane {
 // rig/camera/port.h.
 [[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
 
-// Corners of the image, as (column, row), one of which is as far from the axis as any point: a
-// single one if all are alike.
+// Corners of the image, as (column, row), one of which is the farthest point from the axis; a
+// single one if all are equal.
 [[nodiscard]] std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera);
 
-// How far behind the pupil's place, along a ray of the image, the water may begin [m].
+// An upper bound of the distance from the pupil at which rays of the image enter the water [m].
 [[nodiscard]] double port_reach_m(const Rig& rig);
 
-// Distance along the ray to the plane [m], or empty if the ray does not reach it.
+// Distance along the ray to the plane [m]; empty if the ray does not reach it.
 [[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
 
 // The floor points that the image sees, on an even grid of `side` x `side` points from corner to
@@ -67,22 +67,22 @@ struct LampGrid {
     int along = 1;
 };
 
-// The coarsest grid that keeps the smooth light right to kGridError where water attenuates by K,
+// The coarsest grid whose error for smooth light is within kGridError in water of attenuation K,
 // and whose lamps are closer together than kLampSpacing times the distance d from the emitter to
 // the floor below it, or to an object that is nearer. A midpoint rule of spacing h errs by h^2
 // f''/24. For f = cos^n(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, so
 // that cos(theta) d does not change, and k = K d,
 //
 //   on the floor, by its height d over it          f''/f <= ((k + n + 2)^2 + n + 2) / d^2
-//   on what faces the lamp, by its distance d      f''/f <= ((k + n + 3)^2 + n + 3) / d^2
+//   on a surface facing the lamp, at distance d    f''/f <= ((k + n + 3)^2 + n + 3) / d^2
 //
 // with the beam's steepest n: k^2 + 6 k + 12 and k^2 + 8 k + 20 for cones of n = 1. For f is a^n H
-// exp(-K d) / d^(n + 3), a constant and H the lamp's height over the surface: it bends most where
-// the lamp moves straight away from what it lights, H with it (the first) or not (the second). So
-// h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the second
-// towards the rim of what an emitter lights. For n = 1, in clear water over a floor, kLampSpacing
-// is the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
-// what a highlight bends is not counted.
+// exp(-K d) / d^(n + 3), a constant and H the lamp's height over the surface: its curvature is
+// largest where the lamp moves straight away from the lit point, and H changes with it (the first)
+// or not (the second). So h^2 = 24 kGridError f/f''. The first is reached straight below a vertical
+// emitter, the second towards the rim of the lit area. For n = 1, in clear water over a floor,
+// kLampSpacing is the narrower, up to k = 1.1. A shadow or cone edge becomes as many steps as there
+// are lamps; the curvature of highlights is not included.
 [[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m);
 inline constexpr double kGridError = 1e-4;
 inline constexpr double kLampSpacing = 0.011;
@@ -92,11 +92,11 @@ inline constexpr double kLampSpacing = 0.011;
 // Centres of the grid's cells [m], along and across as in the beam's frame.
 [[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
 
-// The least distance of a strobe from what it lights [m].
+// The least distance of a strobe from a lit surface [m].
 inline constexpr double kLeastDistance_m = 0.001;
 
 // Throws InputError, which names the strobe, unless its height above the floor is sufficient and
-// all of its lamps are above it: an emitter may extend below.
+// all of its lamps are above it, since an emitter may extend below.
 void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
 
 // [rad], for directions of any length.

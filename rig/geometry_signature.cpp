@@ -84,7 +84,7 @@ void add_strobe(const Strobe& strobe, Signature& all) {
     all[key + " emitter"] = fmt::format("{} x {} m", across_m, along_m);
 }
 
-// For the strobes or objects, whose sources and materials frames know by their order.
+// For strobes or objects, since frames refer to their sources and materials by order.
 template <typename Named>
 std::string order_of(const std::vector<Named>& things) {
     std::vector<std::string> names;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Everything in a rig that determines where its light goes, whatever its colour: rigs of the same
+// Everything in a rig that determines the paths of its light, whatever its colour: rigs of the same
 // signature differ at most in lamp spectra, powers, the water's losses, reflectances and the
-// sensor. By key, in words and numbers with the fewest digits that read back to the same.
+// sensor. By key, as text, with the fewest digits that read back to the same number.
 //
 // Composed of the parts' own signatures: beam, port, lens, and the water's index, which bends rays
-// behind a port. Every field of the rig is visited, so that a new one does not compile until it is
-// decided whether frames depend on it.
+// behind a port. Every field of the rig is listed, so that the code does not compile with a new
+// field until it is decided whether frames depend on it.
 #pragma once
 
 #include "rig/rig.h"

@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// One of this unit in the key's own unit.
+// The size of this unit in the key's own unit.
 struct Unit {
     std::string_view name;
     double factor = 1.0;
@@ -307,8 +307,7 @@ void Doubter::judge_levels(const toml::table& root) {
                     *readout.white_level_dn));
 }
 
-// Nobody aims all strobes of a sled a degree inward; in radians the same numbers reach a right
-// angle.
+// Strobes are not all aimed within a degree or so; in radians the same numbers reach a right angle.
 void Doubter::judge_tilts() {
     constexpr double kLeast = 5.0 * kRadiansPerDegree;
     const auto may_be_radians = [](const auto& tilt) {
@@ -357,7 +356,7 @@ void Doubter::judge_cones(const toml::table& root) {
     }
 }
 
-// Files have angles in degrees: a table that ends at pi or pi/2 has them in radians.
+// Angles in files are in degrees: a table that ends at pi or pi/2 is in radians.
 void Doubter::judge_beam_tables() {
     std::set<std::string> done;
     for (const Strobe& strobe : rig_.strobes) {
@@ -376,8 +375,8 @@ void Doubter::judge_beam_tables() {
     }
 }
 
-// Red, where water itself absorbs most and its constituents add little: nothing is clearer than
-// pure water. All knots must be out of range, as with a wrong unit; a single one may have any
+// In the red, water itself absorbs most and its constituents add little, and no water is clearer
+// than pure water. All knots must be out of range, as with a wrong unit; a single one may have any
 // value.
 void Doubter::judge_absorption(const toml::table& root) {
     struct Pure {

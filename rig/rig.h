@@ -53,8 +53,8 @@ struct Strobe {
     Beam beam;
     Spectrum spectrum;  // Phi(lambda) at power 1
     double power = 1.0;
-    std::optional<Emitter> emitter;  // none: a point
-    bool is_absolute = false;        // its flux was given: power times spectrum is W/nm, or J/nm
+    std::optional<Emitter> emitter;  // empty: a point
+    bool is_absolute = false;        // known flux: power times spectrum is W/nm, or J/nm
 };
 
 struct Sphere {
@@ -68,7 +68,7 @@ struct Box {
     Eigen::Vector3d most_m = Eigen::Vector3d::Zero();
 };
 
-// Flat triangles, each lit on the side that the camera sees, whatever the order of its corners.
+// Flat triangles, each lit on the side that faces the camera, whatever the order of its corners.
 struct Mesh {
     std::vector<Eigen::Vector3d> vertices_m;
     std::vector<std::array<int, 3>> triangles;  // of vertices
@@ -99,11 +99,11 @@ struct Rig {
     Water water;
     Seafloor seafloor;
     std::vector<Strobe> strobes;
-    std::vector<Spectrum> materials{};  // further reflectances that the plan serves
+    std::vector<Spectrum> materials{};  // further reflectances in the plan
     std::vector<Object> objects{};
     std::filesystem::path scene{};  // a user's POV-Ray scene; empty: floor and objects
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
-    std::string toml{};  // the rig file as it was read
+    std::string toml{};  // the rig file's text
     std::vector<RigFile> files{};
 };
 

@@ -36,7 +36,8 @@ double distance_to_segment_m(const Vector3d& a, const Vector3d& b, const Vector3
     return (a + share * along - point_m).norm();
 }
 
-// Perpendicular to the triangle's plane if the point is over the triangle, else to its rim.
+// The distance perpendicular to the triangle's plane if the point is over the triangle, else to its
+// rim.
 double distance_to_triangle_m(const std::array<Vector3d, 3>& corners_m, const Vector3d& point_m) {
     const Vector3d normal =
         (corners_m[1] - corners_m[0]).cross(corners_m[2] - corners_m[0]).normalized();
@@ -60,7 +61,7 @@ double distance_to_mesh_m(const Mesh& mesh, const Vector3d& point_m) {
 }
 
 // Whether the half line from the point crosses the triangle: it passes all three sides on the same
-// hand, with the triangle's plane ahead.
+// side, with the triangle's plane ahead.
 bool crosses(const std::array<Vector3d, 3>& corners_m,
              const Vector3d& point_m,
              const Vector3d& direction) {
@@ -76,8 +77,8 @@ bool crosses(const std::array<Vector3d, 3>& corners_m,
 }
 
 bool mesh_holds(const Mesh& mesh, const Vector3d& point_m) {
-    // Three directions, none along anything that people draw: a line that meets an edge counts it
-    // twice or not at all, but two of them do not.
+    // Three directions, none of them likely to be parallel to an object's edge. A line that meets
+    // an edge may count it twice or not at all; the majority of three is right.
     const std::array<Vector3d, 3> directions{Vector3d(0.377, 0.593, 0.711),
                                              Vector3d(-0.823, 0.291, 0.487),
                                              Vector3d(0.139, -0.957, 0.253)};

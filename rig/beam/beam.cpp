@@ -55,7 +55,7 @@ double soft_edge(const Cone& cone, double cosine) {
 }
 
 // The integral of cos^n(theta) up to an angle. 1 - cos^(n + 1) is a small difference for narrow
-// cones: expm1 and log1p keep its digits.
+// cones: expm1 and log1p preserve its digits.
 double cone_flux(double half_angle_rad, double exponent) {
     if (exponent == 1.0) {
         const double sin_gamma = std::sin(half_angle_rad);
@@ -96,7 +96,7 @@ Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& toward
     return {c * x + s * y, c * y - s * x, frame.axis.dot(towards)};
 }
 
-// Beyond the directions that a window transmits: the last of them.
+// Beyond the directions that a window transmits, the last of them is used.
 PatternView view_of(const Beam& beam, const Vector3d& direction) {
     if (!beam.window) return {.direction = direction};
     if (const auto found = in_air(*beam.window, direction))
@@ -184,8 +184,7 @@ double most_of_cones(const Beam& beam, double nearest_rad) {
     return intensity;
 }
 
-// A cone of directions in water as a cone in air that contains it, and the bound of the window's
-// factor.
+// A cone in air that contains a cone of directions in water, and the bound of the window's factor.
 struct PatternCone {
     Vector3d direction;
     double nearest_rad = 0.0;  // to the axis
@@ -213,8 +212,8 @@ std::optional<PatternCone> cone_of(const Beam& beam, const Vector3d& direction, 
                        .factor = window_factor(window, std::max(0.0, std::cos(far_rad)))};
 }
 
-// Where the light of a ring about the axis is not a smooth function of its angle: cones' edges, a
-// table's rows; and some more for patterns with lines of other shapes.
+// Angles off the axis at which the light of a ring is not smooth: cones' edges and a table's rows.
+// Some more are added for patterns with lines of other shapes.
 std::vector<double> breaks_rad(const Beam& beam) {
     constexpr int kPieces = 45;
     std::vector<double> breaks{0.0, kRightAngle_rad};
@@ -257,7 +256,7 @@ double flux_through_window(const Beam& beam) {
     return sum;
 }
 
-// For all directions of a grid, the relative slope and curvature of I.
+// From the relative slope and curvature of I in all directions of a grid.
 double steepest_by_grid(const Beam& beam) {
     constexpr double kStep_rad = std::numbers::pi / 180.0;
     constexpr int kRings = 90;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The distribution of a strobe's light over directions: everything that may be asked of a beam.
+// The distribution of a strobe's light over directions, and all properties of a beam.
 //
 //   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
 //
@@ -12,20 +12,19 @@
 //   I = sum of A_k cos^n_k(theta) S_k(theta) over the cones with theta <= gamma_k, theta < 90
 //   degrees
 //
-//   S_k       1 to gamma_k - edge_k, from there t^2 (3 - 2 t) down to 0 at gamma_k, with t linear
-//   in
-//             the cosine; 1 as far as gamma_k where edge_k = 0
+//   S_k       1 up to gamma_k - edge_k, then t^2 (3 - 2 t), down to 0 at gamma_k, with t linear in
+//             the cosine; 1 up to gamma_k if edge_k = 0
 //   flux:     A_k = alpha_k / (integral of cos^n S over all directions), so that the cone carries
 //             alpha_k of the flux; for n = 1 without a soft edge, alpha_k / (pi sin^2 gamma_k)
 //   literal:  A_k = alpha_k, as the source paper prints it
 //
-// A pattern is scaled to a flux of 1, in air if it was measured there: the window's reflections are
-// lost.
+// A pattern is scaled to a flux of 1, in air if it was measured there; light that the window
+// reflects is lost.
 //
-// Callers ask for a beam's properties here and do not know its kind. Three read the kinds
-// themselves: the rig's reader, scene_gen/beam_sdl.h for POV-Ray, and the reference (validation/),
-// which computes light from the rig's description only. A new kind is a file next to
-// rig/beam/beam_table.h, a case in rig/beam/beam.cpp, and these three.
+// Callers use these functions and do not know a beam's kind. Three use the kinds directly: the
+// rig's reader, scene_gen/beam_sdl.h for POV-Ray, and the reference (validation/), which computes
+// light from the rig's description only. A new kind is a file next to rig/beam/beam_table.h, a case
+// in rig/beam/beam.cpp, and these three.
 #pragma once
 
 #include "rig/beam/beam_optics.h"
@@ -48,7 +47,7 @@ struct Cone {
     double half_angle_rad = 0.0;
     double weight = 0.0;    // alpha_k
     double exponent = 1.0;  // n
-    double edge_rad = 0.0;  // over which it falls to 0, up to half_angle_rad
+    double edge_rad = 0.0;  // the falloff to 0, up to half_angle_rad
 
     [[nodiscard]] bool operator==(const Cone&) const = default;
 };
@@ -65,12 +64,12 @@ struct Beam {
     BeamPattern pattern{};
     double per_flux = 1.0;  // of the pattern: 1 / its own flux, from scaled_to_flux()
     double turn_rad = 0.0;  // rotation of the pattern about the axis, from along to across
-    std::optional<BeamWindow> window{};  // measured in air
+    std::optional<BeamWindow> window{};  // if measured in air
 
     [[nodiscard]] bool operator==(const Beam&) const = default;
 };
 
-// A pattern with its per_flux.
+// Sets a pattern's per_flux.
 [[nodiscard]] Beam scaled_to_flux(Beam beam);
 
 // The orientation of a beam, and of an emitter, in the sled's frame: unit vectors. `along` is the
@@ -92,7 +91,7 @@ inline constexpr double kForeAndAftSine = 1e-6;
                                        const Eigen::Vector3d& towards);
 
 // A direction in the pattern's frame: the lamp's frame, rotated, and in air if it was measured
-// there. Empty where the window transmits nothing.
+// there. Empty where the window transmits no light.
 struct PatternView {
     Eigen::Vector3d direction;
     double factor = 1.0;  // relative to the pattern's value there
@@ -100,21 +99,21 @@ struct PatternView {
 [[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
                                                       const BeamFrame& frame,
                                                       const Eigen::Vector3d& towards);
-// intensity_towards() as if the edge that lights the direction `from` were not there: where a small
-// turn crosses no edge, it is I itself.
+// intensity_towards() without the edge between the two directions: the light at `from` continues
+// smoothly. If a small turn crosses no edge, it is I itself.
 [[nodiscard]] double continued_intensity(const Beam& beam,
                                          const BeamFrame& frame,
                                          const Eigen::Vector3d& towards,
                                          const Eigen::Vector3d& from);
 
-// Upper bound of I over all directions within an angle of this one, and over all directions.
+// Upper bounds of I over all directions within an angle of this one, and over all directions.
 [[nodiscard]] double most_intensity(const Beam& beam,
                                     const BeamFrame& frame,
                                     const Eigen::Vector3d& towards,
                                     double within_rad);
 [[nodiscard]] double most_intensity(const Beam& beam);
 
-// Whether there is light within an angle of this direction, and whether there is any.
+// Whether there is light within an angle of this direction, and in any direction.
 [[nodiscard]] bool reaches(const Beam& beam,
                            const BeamFrame& frame,
                            const Eigen::Vector3d& towards,
@@ -122,18 +121,18 @@ struct PatternView {
 [[nodiscard]] bool is_dark(const Beam& beam);
 
 // The angles off the axis where I has a step, or falls as steeply as one: cos^n goes to 0 at 90
-// degrees, so a cone has an edge there only if n < 1. Behind a window, where its light ends.
+// degrees, so a cone has an edge there only if n < 1. Behind a window, the end of its light.
 [[nodiscard]] std::vector<double> edges_rad(const Beam& beam);
-// Steps that are not circles about the axis: those of a table over a rectangle of angles, or of a
-// sharp image. They bound one region of directions, which contains the light.
+// Whether I has steps that are not circles about the axis: those of a table over a rectangle of
+// angles, or of a sharp image. They bound one region of directions, which contains the light.
 [[nodiscard]] bool has_rim(const Beam& beam);
 [[nodiscard]] bool is_within_rim(const Beam& beam,
                                  const BeamFrame& frame,
                                  const Eigen::Vector3d& towards);
 
 // I changes no more steeply with the direction than cos to this power does, and curves no more: for
-// cones without soft edges (ln I)' >= n (ln cos)'. For all others it is found on a grid of a
-// degree, with I limited to at least kDimBeamShare of the largest, and is an estimate.
+// cones without soft edges (ln I)' >= n (ln cos)'. For all others it is an estimate, found on a
+// grid of a degree, with I limited to at least kDimBeamShare of the largest.
 inline constexpr double kDimBeamShare = 0.01;
 [[nodiscard]] double steepest_exponent(const Beam& beam);
 
@@ -152,10 +151,10 @@ struct ConeLight {
     double on_axis = 0.0;  // [1/sr]
     double exponent = 1.0;
     double edge_cosine = 0.0;
-    double full_cosine = -1.0;  // where its soft edge begins; -1 for none
+    double full_cosine = -1.0;  // start of the soft edge; -1 without one
 
-    // I at a cosine, as if the edge between it and the direction `from` of the other cosine were
-    // not there.
+    // I at a cosine, without any edge between it and the other cosine, that of the direction
+    // `from`.
     [[nodiscard]] double at(double cosine, double cosine_from) const;
 };
 [[nodiscard]] std::vector<ConeLight> cone_lights(const Beam& beam);

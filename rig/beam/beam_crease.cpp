@@ -12,7 +12,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// For the creases of one beam: its own directions in the sled's frame, and the window's index.
+// The frame of one beam's creases: the beam's own directions in the sled's frame, and the window's
+// index.
 struct CreaseFrame {
     Vector3d X;
     Vector3d Y;

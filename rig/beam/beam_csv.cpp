@@ -19,7 +19,7 @@ namespace {
 const std::vector<std::string> kRoundColumns{"theta_deg", "intensity"};
 const std::vector<std::string> kTurnColumns{"theta_deg", "phi_deg", "intensity"};
 
-// The distinct values of a column in order, each with the first line that has it.
+// The distinct values of a column in order, each with the first line that contains it.
 std::vector<FileNumber> values_of(const Table& table, std::size_t column) {
     std::map<double, std::size_t> line_of;
     for (const TableRow& row : table.rows) line_of.emplace(row.fields[column], row.line);
@@ -103,7 +103,7 @@ void unfold(PhotometricFile& photometry,
     set_turn(photometry.table, std::move(planes));
 }
 
-// A line for which no colon ends a keyword early.
+// A comment line in which no colon ends a keyword early.
 std::string comment(const PhotometricLabel& label) {
     std::string keyword = label.keyword.empty() ? "other" : label.keyword;
     std::ranges::replace(keyword, ':', ' ');

@@ -14,7 +14,7 @@
 //
 // The rows may be in any order. With phi, there is one row for each theta and each phi, and phi
 // makes a full turn: 0 to 360 degrees, with the intensities of 0 repeated at 360, which may be
-// omitted if the steps are even. Nothing is mirrored. phi = 0 alone means the same all around.
+// omitted if the steps are even. Nothing is mirrored. phi = 0 alone means a round beam.
 #pragma once
 
 #include "rig/beam/photometric_file.h"

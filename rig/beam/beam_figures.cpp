@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 const BeamFrame kLamp{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
 constexpr double kFine_deg = 0.1;
 
-// By bisection, between an angle where it is bright and one where it is not.
+// By bisection, between an angle above half and one below.
 double edge_of_half(const Beam& beam, BeamPlane plane, double bright, double dim, double half) {
     constexpr double kClose_rad = 1e-9;
     while (std::abs(dim - bright) > kClose_rad) {
@@ -46,7 +46,7 @@ double fwhm_rad(const Beam& beam, BeamPlane plane) {
     return largest > 0.0 ? outermost(1) - outermost(-1) : 0.0;
 }
 
-// On a grid of a tenth of a degree off the axis.
+// On a grid of a tenth of a degree.
 void find_extremes(const Beam& beam, BeamFigures& figures) {
     constexpr int kSteps = static_cast<int>(180.0 / kFine_deg);
     for (int i = 0; i <= kSteps; ++i) {

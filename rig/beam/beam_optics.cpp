@@ -27,7 +27,7 @@ double disc_corner(double x, double y) {
     if (y >= 1.0) return slice(x);
     const double x2_y2 = x * x + y * y;
     if (x2_y2 >= 1.0) {
-        // The corner is outside: it cuts off caps that do not meet, or only one.
+        // The corner is outside and cuts off two caps that do not meet, or only one.
         if (x >= 0.0 && y >= 0.0) return slice(x) + slice(y) - std::numbers::pi;
         if (x >= 0.0) return slice(y);
         if (y >= 0.0) return slice(x);
@@ -41,7 +41,7 @@ double defocus(const BeamOptics& optics) {
     return 1.0 - optics.distance_m / optics.focal_length_m;
 }
 
-// The part of the lens where light of a slope comes from the rectangle.
+// The area of the lens where light of a slope comes from the rectangle.
 double lit_area_m2(const BeamOptics& optics, const Vector2d& slope) {
     const double R = 0.5 * optics.aperture_m;
     const double k = std::abs(defocus(optics));
@@ -53,7 +53,7 @@ double lit_area_m2(const BeamOptics& optics, const Vector2d& slope) {
     }
     const Vector2d high = (middle_m + half_m) / (k * R);
     const Vector2d low = (middle_m - half_m) / (k * R);
-    if (low.cwiseMax(0.0).squaredNorm() >= 1.0) return 0.0;  // and not a rounding remainder
+    if (low.cwiseMax(0.0).squaredNorm() >= 1.0) return 0.0;  // not a rounding remainder
     const double area = disc_corner(high.x(), high.y()) - disc_corner(low.x(), high.y()) -
                         disc_corner(high.x(), low.y()) + disc_corner(low.x(), low.y());
     return R * R * std::max(0.0, area);
@@ -122,7 +122,7 @@ double optics_flux(const BeamOptics& optics) {
     using Kronrod = boost::math::quadrature::gauss_kronrod<double, 31>;
     constexpr unsigned kHalvings = 8;
     constexpr double kClose = 1e-11;
-    constexpr int kTurns = 128;  // round a quarter of the disc; all four are alike
+    constexpr int kTurns = 128;  // round a quarter of the disc; all four are equal
     const double R = 0.5 * optics.aperture_m;
     const double k = defocus(optics);
     const double s = optics.distance_m;
@@ -134,8 +134,8 @@ double optics_flux(const BeamOptics& optics) {
         return corner_share(x1, y1) - corner_share(x0, y1) - corner_share(x1, y0) +
                corner_share(x0, y0);
     };
-    // In parts of the lens: Boost compares an error that is not multiplied by the interval's
-    // length, and would bisect those of small lenses without end.
+    // In fractions of the lens: Boost compares an error that is not multiplied by the interval's
+    // length, and would bisect endlessly for small lenses.
     const auto ring = [&](double part) {
         double sum = 0.0;
         for (int i = 0; i < kTurns; ++i) {

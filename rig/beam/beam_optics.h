@@ -16,7 +16,7 @@
 //   s = f        a sharp image of the rectangle, cut at the slopes u/f: I has steps there
 //   s otherwise  the image is blurred by the lens: I falls smoothly
 //
-// The flux is the integral over the lens of what each of its points receives from the rectangle,
+// The flux is the integral over the lens of the light that each point receives from the rectangle,
 // which has a closed form (Lambert's for a rectangle).
 //
 // Limits: a thin lens without aberration or loss, geometrical optics; no light beyond 90 degrees.
@@ -27,7 +27,7 @@
 namespace aphotic {
 
 struct BeamOptics {
-    double along_m = 0.0;  // of the diffuser, its sides
+    double along_m = 0.0;  // sides of the diffuser
     double across_m = 0.0;
     double focal_length_m = 0.0;
     double distance_m = 0.0;  // diffuser to lens
@@ -39,7 +39,7 @@ struct BeamOptics {
 // Directions are in the lamp's frame: x along, y across, z the axis, of any length but 0.
 
 [[nodiscard]] double optics_intensity(const BeamOptics& optics, const Eigen::Vector3d& direction);
-// The same as if the rectangle had no end: the value on the near side of a sharp image's edge.
+// The same for an unbounded rectangle: the value on the near side of a sharp image's edge.
 [[nodiscard]] double endless_intensity(const BeamOptics& optics, const Eigen::Vector3d& direction);
 
 // Upper bound of I over all directions within an angle of this one, and over all directions.

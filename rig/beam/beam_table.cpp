@@ -35,8 +35,8 @@ bool is_round(const BeamTable& table) {
     return table.horizontal_rad.size() == 1;
 }
 
-// A goniometer's angles are those of a globe. This one is its latitude, from -pi/2 at one pole to
-// pi/2 at the other; the other one is its longitude.
+// A goniometer's angles are those of a globe. One is the latitude, from -pi/2 at one pole to pi/2
+// at the other; the other one is the longitude.
 bool vertical_is_latitude(TableAngles type) {
     return type != TableAngles::TypeB;
 }
@@ -59,7 +59,7 @@ struct GridPlace {
     double share = 0.0;
 };
 
-// For an x within the nodes' range.
+// x is within the nodes' range.
 GridPlace place_of(double x, const std::vector<double>& nodes) {
     if (nodes.size() == 1) return {};
     const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
@@ -101,9 +101,9 @@ class TablePlane {
     double share_;
 };
 
-// The smallest rectangle of angles that contains all directions within an angle of one. On a globe,
-// a cap of radius r about latitude b that contains no pole spans asin(sin r / cos b) of longitude
-// to either side.
+// The smallest rectangle of angles that contains all directions within an angle of a given one. On
+// a globe, a cap of radius r about latitude b that contains no pole spans asin(sin r / cos b) of
+// longitude to either side.
 struct AngleBox {
     AngleRange vertical;
     AngleRange horizontal;
@@ -177,7 +177,7 @@ std::vector<double> longitude_weights(const std::vector<double>& longitudes) {
                          [](double x, double other) { return 0.5 * std::abs(other - x); });
 }
 
-// Whether a line of the table, along which one angle is constant, has light.
+// Whether a line of the table, along which one angle is constant, has any light.
 bool line_shines(const BeamTable& table, TableAngle fixed, std::size_t index) {
     const std::size_t rows = table.vertical_rad.size();
     const std::size_t columns = table.horizontal_rad.size();
@@ -238,7 +238,7 @@ double most_table_intensity(const BeamTable& table, const Vector3d& direction, d
     const AngleBox box = box_about(table.angles, direction, within_rad);
     double most = most_within(table, box);
     if (table.angles == TableAngles::TypeC && !is_round(table)) {
-        // The part past the seam, where the turn starts again.
+        // The part beyond the seam, where the turn starts again.
         for (const double turn : {-kTurn_rad, kTurn_rad}) {
             const AngleRange turned{box.horizontal.lo + turn, box.horizontal.hi + turn};
             most = std::max(most, most_within(table, {box.vertical, turned}));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A measured beam: intensities over the two angles of a goniometer, as photometric files have them
+// A measured beam: intensities over the two angles of a goniometer, as in photometric files
 // (rig/beam/photometric_file.h), with every symmetry unfolded.
 //
 //   I(w)   intensity in the direction w, in the table's own unit
@@ -22,7 +22,7 @@
 // and H to the right.
 //
 // At V = 0 of type C, and where all planes of A and of B meet, I is the value in the plane of w;
-// files have one value there in all planes.
+// files repeat one value there in all planes.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,8 +38,8 @@ struct BeamTable {
     TableAngles angles = TableAngles::TypeC;
     // Strictly increasing. C: within 0 to pi. A and B: within -pi/2 to pi/2, two or more.
     std::vector<double> vertical_rad;
-    // Strictly increasing. C: 0 alone, for the same all around, or from 0 to 2 pi, which have the
-    // same intensities. A and B: within -pi/2 to pi/2, two or more.
+    // Strictly increasing. C: 0 alone, for a round beam, or from 0 to 2 pi, which have equal
+    // intensities. A and B: within -pi/2 to pi/2, two or more.
     std::vector<double> horizontal_rad;
     std::vector<double> intensity;  // [horizontal][vertical], vertical fastest; finite, 0 or more
 
@@ -64,15 +64,16 @@ struct BeamTable {
                                  const Eigen::Vector3d& direction,
                                  double within_rad);
 
-// The integral of I over all directions, exact but for rounding, in the table's unit times sr: with
-// x the angle that the solid angle depends on (dw = cos x dx dy; C: V - pi/2, A: V, B: H),
+// The integral of I over all directions, exact except for rounding, in the table's unit times sr.
+// With x the angle on which the solid angle depends (dw = cos x dx dy; C: V - pi/2, A: V, B: H),
 //
 //   sum of I over the nodes times  integral of hat(x) cos x dx  times  integral of hat(y) dy
 [[nodiscard]] double table_flux(const BeamTable& table);
 
-// The lines where I falls to 0 in a step, because the table ends there: along each, one angle stays
-// `at_rad`, while the other runs over all that the table has. None where the table ends at 0 all
-// along, nor where the line is but a point (V = 0 or 180 degrees of C; V of A, H of B at 90).
+// The lines where I falls to 0 in a step, because the table ends: along each, one angle is
+// `at_rad`, and the other covers its whole range. Lines along which the table is 0 throughout are
+// omitted, and so are those that are only a point (V = 0 or 180 degrees of C; V of A, H of B at
+// 90).
 //
 //   type C   Vertical alone: a circle about the axis, or two for a table that begins off it
 //   A and B  the four sides of a rectangle; horizontal lines of B and vertical lines of A are

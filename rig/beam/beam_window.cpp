@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-// For one face and one polarisation: p and q are n cos on either side for s, and cos/n for p.
+// One face for one polarisation: p and q are n cos on either side for s, and cos/n for p.
 struct Face {
-    double by_cosine;  // its transmittance / (cos on the side where light arrives)
+    double by_cosine;  // transmittance / (cos on the side of the incident light)
     double reflected;
 };
 

@@ -4,20 +4,20 @@
 //
 //   I_w(theta_w) = T(theta) n^2 (cos theta_w / cos theta) I(theta),   sin theta = n sin theta_w
 //
-//   theta    angle off the axis in air, theta_w in water; the azimuth stays
+//   theta    angle off the axis in air, theta_w in water; the azimuth does not change
 //   n        index of the water
-//   T        what the window lets through: both its faces by Fresnel, each polarisation by itself,
-//            with the light that goes to and fro between them, unpolarised in all
-//   n^2 ..   the solid angle that shrinks: d(omega) / d(omega_w)
+//   T        the window's transmittance: both faces by Fresnel, separately for each polarisation,
+//            with multiple reflections between them, for unpolarised light
+//   n^2 ..   the change of solid angle: d(omega) / d(omega_w)
 //
 // Light 50 degrees off the axis in air is 35 off it in water, and the axis is n^2 = 1.8 times as
-// bright apart from T. A cos^n of 100 degrees at half maximum becomes 80 wide, not 70: the factor
-// grows outwards. The flux stays, less the faces' reflections. Nothing comes out beyond asin(1/n),
-// some 48 degrees.
+// bright apart from T. A cos^n of 100 degrees at half maximum becomes 80 wide, not 70, since the
+// factor grows outwards. The flux is conserved, less the faces' reflections. There is no light
+// beyond asin(1/n), about 48 degrees.
 //
-// Limits: the window is perpendicular to the axis, wide, and so close to the lamp that the light
-// still starts at the lamp. The indices are those at kWindowIndex_nm, so that a beam has one shape
-// at all wavelengths: from 400 to 700 nm, n^2 differs from that by 1 % at most.
+// Limits: the window is perpendicular to the axis, wide, and so close to the lamp that light can be
+// taken to start at the lamp. The indices are those at kWindowIndex_nm, so that a beam has one
+// shape at all wavelengths: from 400 to 700 nm, n^2 differs from that by 1 % at most.
 #pragma once
 
 #include <Eigen/Core>

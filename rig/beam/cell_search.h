@@ -5,7 +5,7 @@
 //
 //   cell k     from nodes[k] to below nodes[k + 1]
 //
-// Numbers below the first node are in the first cell, those from the last node on in the last.
+// Numbers below the first node are in the first cell, those at or above the last node in the last.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class CellSearch {
         last_bin_ = static_cast<double>(bins - 1);
         bins_per_unit_ = 1.0 / width;
         for (std::size_t bin = 0; bin < bins; ++bin) {
-            // A node at the start of a bin, as with all even nodes, is not inside it.
+            // A node at the start of a bin, as with evenly spaced nodes, is not inside it.
             constexpr double kRounding = 1e-9;
             const double start = nodes_.front() + (static_cast<double>(bin) + kRounding) * width;
             const auto above = std::upper_bound(nodes_.begin() + 1, nodes_.end() - 1, start);

@@ -23,7 +23,7 @@ constexpr double kWidest_rad = 0.5 * std::numbers::pi;
 constexpr int kRings = 1800;  // midpoints, ten to a step
 constexpr int kTurns = 72;
 
-// The beam on rings about its axis: its mean, which cones can match, and all of it.
+// The beam on rings about its axis: its mean, which cones can match, and its total.
 struct Rings {
     VectorXd theta_rad;
     VectorXd solid_angle_sr;
@@ -59,7 +59,7 @@ double half_angle_rad(int step) {
     return step * kFitStep_deg * kRadiansPerDegree;
 }
 
-// Normal equations of all possible cones: G of their products, b of those with the beam.
+// Normal equations of all possible cones: G, the products of cones, and b, those with the beam.
 struct Equations {
     MatrixXd G;
     VectorXd b;
@@ -81,7 +81,7 @@ Equations equations_of(const Rings& rings) {
 
 struct Shares {
     VectorXd alpha;
-    double gain = 0.0;  // by how much they reduce the integral
+    double gain = 0.0;  // reduction of the integral
 };
 
 Shares shares_of(const Equations& all, const std::set<int>& steps) {
@@ -93,7 +93,7 @@ Shares shares_of(const Equations& all, const std::set<int>& steps) {
     return {.alpha = alpha, .gain = 2.0 * b.dot(alpha) - alpha.dot(G * alpha)};
 }
 
-// The best of the sets that differ from this one only in `moving`, by up to `reach` steps.
+// The best set that differs from this one only in `moving`, by up to `reach` steps.
 std::set<int> best_move(const Equations& all, const std::set<int>& from, int moving, int reach) {
     const auto steps = static_cast<int>(all.b.size());
     std::set<int> best = from;

@@ -6,10 +6,10 @@
 //   integral of (I(w) - sum of alpha_k cos(theta) / (pi sin^2 gamma_k) [theta <= gamma_k])^2 dw
 //
 // Shares come from non-negative least squares. Half angles are multiples of kFitStep_deg: each
-// further cone is the one that helps most, then each in turn moves as long as that helps. The
-// result is a minimum that no single move improves, not always the global one.
+// further cone is the one that improves the fit most, then each in turn moves as long as that
+// improves it. The result is a minimum that no single move improves, not always the global one.
 //
-//   error   (the integral / integral of I^2)^(1/2): what no sum of these cones has
+//   error   (the integral / integral of I^2)^(1/2): the part that these cones do not fit
 #pragma once
 
 #include "rig/beam/beam.h"
@@ -21,7 +21,7 @@ namespace aphotic {
 inline constexpr double kFitStep_deg = 0.5;
 
 struct ConeFit {
-    std::vector<Cone> cones;  // weights by flux, the narrowest first; fewer if more do not help
+    std::vector<Cone> cones;  // weights by flux, narrowest first; fewer than N if more do not help
     double error = 0.0;
 };
 

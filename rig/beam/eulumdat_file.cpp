@@ -289,7 +289,7 @@ std::string eulumdat_text(const PhotometricFile& photometry, const std::string& 
     }
     const bool is_round = table.horizontal_rad.size() == 1;
     std::vector<double> turn = table.horizontal_rad;
-    if (!is_round) turn.pop_back();  // 360 degrees is 0 again
+    if (!is_round) turn.pop_back();  // 360 degrees is the same as 0
 
     std::string text;
     const auto add = [&text](std::string_view line) { text.append(line).append("\r\n"); };

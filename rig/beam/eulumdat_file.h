@@ -13,13 +13,13 @@
 // A negative number of lamps means absolute photometry: lumens are the luminaire's. All Mc angles
 // are listed, whichever planes are stored; Isym gives those:
 //
-//   0   all                              1   one, the same all about
+//   0   all                              1   one, for a round beam
 //   2   C0 to C180, Mc/2 + 1 planes      3   C270 over C0 to C90, Mc/2 + 1 planes
 //   4   C0 to C90, Mc/4 + 1 planes
 //
-// Several sets of lamps are a choice for the buyer, and the file does not say which is installed:
-// such a file is refused. Decimal commas are accepted. Gamma is V and C is H of LM-63's type C, C0
-// along; gamma may end anywhere: the light ends there.
+// Several sets of lamps are options, and the file does not state which is installed: such a file is
+// refused. Decimal commas are accepted. Gamma is V and C is H of LM-63's type C, C0 along; gamma
+// may end at any angle, where the light ends.
 //
 // Sources: A. Stockmar, "EULUMDAT - ein Leuchtendatenformat für den europäischen
 // Beleuchtungsplaner", Licht '90, 641-644, with Mc1 = 3 Mc/4 + 1 and Mc2 = Mc1 + Mc/2 for Isym 3;
@@ -36,8 +36,9 @@ namespace aphotic {
 // file_name is for messages.
 [[nodiscard]] PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view text);
 
-// Isym 1 or 0. If the lamps' flux is unknown, absolute, with the table's own. Sizes, watts and
-// direct ratios are 0, for unknown. Types other than C, and a dark table, are an InputError.
+// Isym 1 or 0. If the lamps' flux is unknown, the file is absolute, with the table's own flux.
+// Sizes, watts and direct ratios are 0, for unknown. Types other than C, and a dark table, are an
+// InputError.
 [[nodiscard]] std::string eulumdat_text(const PhotometricFile& photometry,
                                         const std::string& file_name);
 

@@ -90,7 +90,7 @@ class NumberReader {
     std::size_t line_;
 };
 
-// The year of the edition, from a line that names one. A file of 1986 has only free text.
+// The year of the edition, from a line that names one. A file of 1986 has free text instead.
 std::optional<int> edition_in(const std::string& file, std::size_t number, std::string_view line) {
     std::string name;
     for (const char c : lower_case(std::string(line))) {
@@ -144,7 +144,7 @@ std::optional<std::string_view> tilt_in(std::string_view line) {
     return without_blanks(line.substr(1));
 }
 
-// A table of factors for light over the lamp's tilt: we accept only constant ones.
+// A table of factors for light over the lamp's tilt; only constant ones are accepted.
 void pass_over_constant_tilt(NumberReader& numbers) {
     const std::string& file = numbers.file();
     static_cast<void>(numbers.next("the lamp's geometry"));
@@ -164,7 +164,7 @@ struct IesHeader {
     std::size_t verticals = 0;
     std::size_t horizontals = 0;
     TableAngles type = TableAngles::TypeC;
-    double factor = 1.0;  // of all candela
+    double factor = 1.0;  // of all intensities
 };
 
 // The thirteen numbers before the angles.
@@ -248,7 +248,7 @@ void unfold_turn(BeamTable& table,
             last));
 }
 
-// -x of each angle x that is not 0, then the angles.
+// -x for each angle x that is not 0, then the angles themselves.
 std::vector<double> with_negatives(const std::vector<double>& angles) {
     std::vector<double> both;
     for (auto angle = angles.rbegin(); angle != angles.rend(); ++angle)
@@ -264,7 +264,7 @@ std::vector<Value> with_mirror_image(const std::vector<Value>& values) {
     return both;
 }
 
-// Types A and B: mirrors above the horizon to below it, and right to left.
+// Types A and B: mirrors the part above the horizon to below it, and the right part to the left.
 void unfold_quadrants(BeamTable& table, Columns columns) {
     if (table.vertical_rad.front() == 0.0) {
         table.vertical_rad = with_negatives(table.vertical_rad);
@@ -329,7 +329,7 @@ class LineWriter {
     std::size_t width_ = 0;
 };
 
-// Whole words, continued on lines of [MORE] when one is full.
+// Whole words, continued on [MORE] lines when a line is full.
 void add_label(LineWriter& lines, const PhotometricLabel& label) {
     std::string line = fmt::format("[{}]", label.keyword);
     bool has_word = false;
@@ -348,7 +348,7 @@ void add_label(LineWriter& lines, const PhotometricLabel& label) {
     lines.end_line();
 }
 
-// The standard's keywords are kept, others begin with _.
+// The standard's keywords are kept, others are prefixed by _.
 std::string ies_keyword(const std::string& keyword) {
     constexpr std::array kKnown{"TEST",         "TESTLAB",     "ISSUEDATE",     "MANUFAC",
                                 "LUMCAT",       "LUMINAIRE",   "LAMPCAT",       "LAMP",
@@ -388,7 +388,7 @@ std::vector<std::string> degrees_texts(const std::vector<double>& angles_rad) {
     return texts;
 }
 
-// A reader would mirror it.
+// Refuses a table that a reader would mirror.
 void check_sides(const BeamTable& table, const std::string& file_name) {
     if (table.angles == TableAngles::TypeC) return;
     if (table.vertical_rad.front() != 0.0 && table.horizontal_rad.front() != 0.0) return;

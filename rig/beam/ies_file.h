@@ -12,20 +12,20 @@
 //
 //   I = candela x multiplier x ballast factor x lamp factor        [cd]
 //
-// Numbers run across lines, separated by blanks, commas or both. The lamp factor's place holds one
-// (the "ballast-lamp photometric factor") up to 1995; in 2002 it is "for future use", and in 2019 a
-// code for how the file was made (1.1 for an accredited laboratory), which must not be multiplied
-// in. -1 lumens per lamp mean absolute photometry.
+// Numbers may continue across lines, separated by blanks, commas or both. Up to 1995 the lamp
+// factor is a factor (the "ballast-lamp photometric factor"); in 2002 its place is "for future
+// use", and in 2019 it is a code for the origin of the file (1.1 for an accredited laboratory),
+// which must not be multiplied in. -1 lumens per lamp mean absolute photometry.
 //
 // type 1 is C, 2 is B, 3 is A (rig/beam/beam_table.h). V and H are in degrees. By the range of H, a
 // table of type C is
 //
-//   0 alone      the same all about      0 to 180     mirrored in the plane of 0 and 180
+//   0 alone      a round beam            0 to 180     mirrored in the plane of 0 and 180
 //   0 to 90      mirrored in both        90 to 270    mirrored in the plane of 90 and 270
-//   0 to 360     whole; 360 may be left out where the steps are even, for it is 0 again
+//   0 to 360     whole; 360 may be omitted if the steps are even, since it equals 0
 //
 // A table of type A or B that begins at V = 0 is mirrored below, one that begins at H = 0 to the
-// left. V may end anywhere: the light ends there.
+// left. V may end at any angle, where the light ends.
 //
 // Sizes and watts are ignored.
 //
@@ -43,8 +43,9 @@ namespace aphotic {
 // file_name is for messages.
 [[nodiscard]] PhotometricFile parse_ies(const std::string& file_name, std::string_view text);
 
-// Written as LM-63-2002, which every reader knows: type kept, symmetries unfolded, absolute if the
-// lamps' flux is unknown. Keywords that the edition requires say "not stated" if nothing is known.
+// Written as LM-63-2002, which every reader supports. The type is kept, symmetries are unfolded,
+// and photometry is absolute if the lamps' flux is unknown. Keywords that the edition requires have
+// the value "not stated" if unknown.
 [[nodiscard]] std::string ies_text(const PhotometricFile& photometry, const std::string& file_name);
 
 }  // namespace aphotic

@@ -3,14 +3,14 @@
 // Files of measured beams, by their extension:
 //
 //   .ies   IESNA LM-63 of 1986, 1991, 1995, 2002 and 2019           candela
-//   .ldt   EULUMDAT (Stockmar 1990), absolute as DIAL agreed on it  candela
+//   .ldt   EULUMDAT (Stockmar 1990), absolute as by DIAL (2009)     candela
 //   .csv   ours: theta_deg,intensity or theta_deg,phi_deg,intensity  as written
 //
-// rig/beam/ies_file.h, rig/beam/eulumdat_file.h and rig/beam/beam_csv.h describe how each is read
-// and written. In all of them, angle 0 about the axis is our along, and it increases in the
-// direction of LM-63's type C (rig/beam/beam_table.h).
+// rig/beam/ies_file.h, rig/beam/eulumdat_file.h and rig/beam/beam_csv.h describe the formats. In
+// all of them, angle 0 about the axis is our along, and it increases in the direction of LM-63's
+// type C (rig/beam/beam_table.h).
 //
-// The table describes the lamp in the medium in which it was measured: most often air. An error is
+// The table describes the lamp in the medium in which it was measured, most often air. An error is
 // an InputError "file:line: what was found; allowed: ...".
 #pragma once
 
@@ -35,7 +35,7 @@ struct PhotometricLabel {
 };
 
 struct PhotometricFile {
-    BeamTable table;  // of the lamp as it was measured
+    BeamTable table;  // the lamp as measured
     // The file's flux for all lamps; empty for .csv without one, and for absolute photometry, which
     // does not separate the lamp from the luminaire.
     std::optional<double> luminous_flux_lm;
@@ -53,7 +53,7 @@ inline constexpr std::size_t kMostPhotometricBytes = std::size_t{64} << 20U;
 [[nodiscard]] PhotometricFile read_photometric_file(const std::filesystem::path& file);
 
 // The same shape with its largest intensity from 0.5 to below 1, scaled by a power of two: no digit
-// changes, and sums and products of intensities cannot overflow, and underflow only if negligible.
+// changes, sums and products of intensities cannot overflow, and only negligible ones underflow.
 // Intensities under 2.2e-308 of the largest lose digits that are negligible too. Reading refuses
 // tables whose largest intensity is itself that small, since doubles have lost its digits.
 [[nodiscard]] BeamTable normalised(BeamTable table);

@@ -225,7 +225,8 @@ std::string degrees_text(double angle_rad) {
         const double deg = *finite_decimal(fmt::format("{:.{}g}", near_deg, digits));
         if (radians_of(deg) == angle_rad) return fmt::format("{}", deg);
     }
-    // Degrees are finer than radians in places, and the division may be off by a step or two.
+    // In places, doubles in degrees are finer than in radians, and the division may be off by a
+    // step or two.
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::array<double, 2> around{near_deg, near_deg};
     for (int step = 0; step < 4; ++step) {

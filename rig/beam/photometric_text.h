@@ -14,7 +14,7 @@
 
 namespace aphotic {
 
-// For one table. A file of 0.25 by 0.5 degrees has 519,841.
+// The limit for one table. A file of 0.25 by 0.5 degrees has 519,841.
 inline constexpr std::size_t kMostTableNodes = 4'000'000;
 
 // The least distance between two angles of a table.
@@ -25,7 +25,7 @@ inline constexpr double kLeastAngleStep_deg = 1e-6;
 
 [[nodiscard]] std::string_view without_blanks(std::string_view text);
 
-// A word of the file, for a message.
+// A word of the file, as shown in messages.
 [[nodiscard]] std::string shown_word(std::string_view word);
 
 [[nodiscard]] std::optional<double> finite_decimal(std::string_view word);
@@ -88,8 +88,8 @@ struct TurnPlane {
 // plane at 360, equal to that at 0, was only omitted.
 [[nodiscard]] bool closes_evenly(const std::vector<FileNumber>& angles_deg);
 
-// The planes in order from 0 to 360 degrees, both included. Between the last and the first plane of
-// the turn, values are linear, which gives the value at 0 if no plane is there.
+// The planes in order from 0 to 360 degrees, both included. Values are linear between the last and
+// the first plane of the turn, which gives the value at 0 if there is no plane at 0.
 void set_turn(BeamTable& table, std::vector<TurnPlane> planes);
 
 [[nodiscard]] double radians_of(double deg);

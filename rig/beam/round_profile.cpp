@@ -25,7 +25,7 @@ double chord_of(double theta_rad) {
     return 2.0 * std::sin(0.5 * theta_rad);
 }
 
-// Chebyshev's points of the first kind, on 0 to 1: none is an end.
+// Chebyshev points of the first kind on 0 to 1, which exclude the ends.
 double chebyshev_point(std::size_t i) {
     const double share = (static_cast<double>(i) + 0.5) / kProfileOrder;
     return 0.5 - 0.5 * std::cos(std::numbers::pi * share);
@@ -139,7 +139,7 @@ RoundProfile::RoundProfile(const Beam& beam)
             static_cast<std::size_t>(region),
             0);
     }
-    // Beyond, there is no light.
+    // There is no light beyond.
     const double end = starts.back();
     const bool ends_in_step = std::ranges::any_of(
         steps, [&](double step_rad) { return std::abs(chord_of(step_rad) - end) < 1e-9; });
@@ -181,7 +181,7 @@ Lanes RoundProfile::continued(const Lanes& cosine, const Lanes& cosine_from) con
             I[k] = 0.0;
             continue;
         }
-        // Past a window's last direction, its last piece.
+        // Beyond a window's last direction, its last piece applies.
         const double q = has_window_ ? std::min(I[k], std::numbers::sqrt2) : I[k];
         const std::size_t region = pieces_[piece_at_(q_from[k])].region;
         std::size_t own = piece_at_(q);

@@ -12,7 +12,8 @@ namespace {
 using std::numbers::pi;
 
 // atan(t) for |t| <= 7/16, as t minus t^3 times this polynomial in t^2: fdlibm's s_atan.c (Sun
-// Microsystems, 1993), accurate to 2^-58. Even and odd powers apart are two short chains.
+// Microsystems, 1993), accurate to 2^-58. Even and odd powers are separate, which makes two short
+// chains.
 Pack arc_tangent(const Pack& t) {
     constexpr std::array kByDegree{3.33333333333329318027e-01,
                                    -1.99999999998764832476e-01,

@@ -4,13 +4,13 @@
 //
 //   I = (1 - h) ((1 - v) I00 + v I01) + h ((1 - v) I10 + v I11)
 //
-// v, h   how far along the cell of the table both angles V and H are, 0 to 1
+// v, h   the places of the angles V and H within their cell of the table, 0 to 1
 //
 // as in table_intensity(), except for the angles: cells are found without a search
 // (rig/beam/cell_search.h), and both angles are arc tangents of packs, accurate to kCellAngle_rad.
-// Within that of its ends a table continues. The error of I is thus its slope times that, while
-// that of std::atan2 is a few times smaller: for a table in whole degrees, 1.2e-13 of the peak
-// where I falls from the peak to 0 in one cell. That is 1e-6 of I itself down to 1.2e-7 of the
+// A table is continued by that angle beyond its ends. The error of I is thus its slope times that,
+// while that of std::atan2 is a few times smaller: for a table in whole degrees, 1.2e-13 of the
+// peak where I falls from the peak to 0 in one cell. That is 1e-6 of I itself down to 1.2e-7 of the
 // peak, and in all cells that fall less steeply further down.
 #pragma once
 
@@ -26,7 +26,7 @@ inline constexpr double kCellAngle_rad = 2e-15;
 
 class TableCells {
   public:
-    // For a table that is not round.
+    // The table must not be round.
     explicit TableCells(const BeamTable& table);
 
     // For directions in the lamp's frame, of these lengths.

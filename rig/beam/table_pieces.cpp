@@ -18,7 +18,7 @@ TablePiece straight(const BeamTable& table, std::size_t first, std::size_t last)
             .c = {start, table.intensity[last] - start, 0.0, 0.0}};
 }
 
-// At the nodes and midway between them.
+// Fitted at the nodes and midway between them.
 std::optional<TablePiece> cubic(const BeamTable& table,
                                 std::size_t first,
                                 std::size_t last,

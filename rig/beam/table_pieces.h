@@ -5,10 +5,10 @@
 //
 //   I(V) = c0 + c1 x + c2 x^2 + c3 x^3      x = (V - first) / (last - first)
 //
-// Each piece extends as far as least squares stay within `off` of the largest intensity, at the
-// table's nodes and midway between them, where a straight line between nodes is farthest from a
-// smooth curve; at least from a node to the next, as the straight line. off = 0 is thus the table
-// itself.
+// Each piece extends as far as a least-squares fit stays within `off` of the largest intensity, at
+// the table's nodes and midway between them, where a straight line between nodes is farthest from a
+// smooth curve; at least from a node to the next, as the straight line. off = 0 thus reproduces the
+// table.
 #pragma once
 
 #include "rig/beam/beam_table.h"
@@ -30,7 +30,7 @@ struct TablePiece {
     }
 };
 
-// For type C with one H; increasing, without gaps from the first V to the last.
+// For type C with one H. The pieces increase, without gaps, from the first V to the last.
 [[nodiscard]] std::vector<TablePiece> pieces_of(const BeamTable& table, double off);
 
 }  // namespace aphotic

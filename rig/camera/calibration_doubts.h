@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Likely mistakes in a calibration that can nevertheless be computed: each is a sentence with the
-// number, the usual range and a possible cause.
+// Likely mistakes in a calibration that is otherwise valid. Each is a sentence with the number, the
+// usual range and a possible cause.
 //
 //   the principal point       further from the image's middle than 20 % of its width or height
 //   fx / fy                   below 0.5 or over 2

@@ -93,8 +93,8 @@ CameraCalibration read_kalibr_calibration(const CalibrationKeys& keys) {
 //   column = width/2 + cx + x' (f + b1) + y' b2
 //   row    = height/2 + cy + y' f
 //
-// so p1 is LensModel's p2 and the other way round. The first pixel's centre is (0.5, 0.5). What is
-// missing but for size, projection and f is 0; p3 and p4 must be.
+// so p1 is LensModel's p2 and vice versa. The first pixel's centre is (0.5, 0.5). Missing values
+// are 0, except for size, projection and f, which are required; p3 and p4 must be 0.
 //
 // Source: Agisoft Metashape Pro 2.1, User Manual, Appendix D, "Camera models".
 CameraCalibration read_metashape_calibration(const CalibrationKeys& keys) {
@@ -165,7 +165,7 @@ void require_within(
         "{}: {}: found {}; allowed: a number from {} to {}", file_name, what, value, least, most);
 }
 
-// Numbers that any format's lens can be computed with.
+// Refuses numbers from which no lens can be computed.
 void require_sound(const std::string& file_name, const LensModel& lens) {
     // The range of focal_length_mm over pixel_pitch_um.
     constexpr double kLeastFocal_px = 1e-3;

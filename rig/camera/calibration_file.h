@@ -7,9 +7,9 @@
 //   cameras.txt of COLMAP, calibration.yaml of calibmar           rig/camera/colmap_calibration.h
 //   calibration in XML of Metashape                               rig/camera/calibration_file.cpp
 //
-// Each of these headers states where the centre of the first pixel is: here it is (0.5, 0.5). A
-// file describes one camera. An error is an InputError "file:line: key: what was found; allowed:
-// ...".
+// Each of these files states where its format has the centre of the first pixel; here it is (0.5,
+// 0.5). A file describes one camera. An error is an InputError "file:line: key: what was found;
+// allowed: ...".
 #pragma once
 
 #include "rig/camera/lens_model.h"
@@ -43,7 +43,7 @@ struct CameraCalibration {
     bool operator==(const CameraCalibration&) const = default;
 };
 
-// The limit allows for OpenCV's list of every corner that it found.
+// The limit allows for OpenCV's list of all detected corners.
 inline constexpr std::size_t kMostCalibrationBytes = std::size_t{2} << 20U;
 
 // file_name is for messages. Values are in range, but need not be valid over the whole image:

@@ -38,8 +38,8 @@ std::size_t line_of(const YAML::Mark& mark) {
     return mark.is_null() ? 1 : static_cast<std::size_t>(mark.line) + 1;
 }
 
-// The one document of a file. Aliases, which no calibration has, would let a few bytes expand to
-// any number of values.
+// Reads the one document of a file. Aliases, which no calibration has, would let a few bytes expand
+// to any number of values.
 class YamlReader : public YAML::EventHandler {
   public:
     explicit YamlReader(const std::string& file_name) : file_name_(file_name) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Keys and values of a calibration in YAML, JSON (which is YAML) or XML, as its readers need them.
+// The keys and values of a calibration in YAML, JSON (which is YAML) or XML that its readers use.
 // Everything else in the file is ignored. Names are compared without case: OpenCV wrote
 // Camera_Matrix before it wrote camera_matrix.
 //
@@ -17,7 +17,7 @@ namespace aphotic {
 struct CalibrationValue {
     enum class Kind { Text, List, Map };
     Kind kind = Kind::Text;
-    std::string name{};  // of the key; of an element in XML; none in a list
+    std::string name{};  // of the key; of an element in XML; empty in a list
     std::string text{};
     std::vector<CalibrationValue> values{};  // of a list or map
     std::size_t line = 0;
@@ -37,7 +37,7 @@ struct CalibrationValue {
 // A map whose errors name file, line and key.
 class CalibrationKeys {
   public:
-    // Both are kept by reference.
+    // Both must outlive it.
     CalibrationKeys(const std::string& file_name,
                     const CalibrationValue& map,
                     std::string path = "");

@@ -18,7 +18,7 @@
 
 namespace aphotic {
 
-// The camera's settings for the survey's files; empty for unknown.
+// The camera's settings for the survey's files; empty if unknown.
 struct Readout {
     std::string bayer{};  // "RGGB", "BGGR", "GRBG", "GBRG" or "mono"
     std::optional<double> black_level_dn{};
@@ -32,13 +32,14 @@ struct Readout {
     std::optional<double> saturation_e{};
 };
 
-// How navigation measures an altitude: along the axis of the frame that pitch and roll tilt,
+// The direction in which navigation measures an altitude: along the axis tilted by pitch and roll,
 // vertically, or to the nearest point of the floor.
 enum class AltitudeIs { Axis, Plumb, Nearest };
 inline constexpr std::array<std::string_view, 3> kAltitudeWords{"axis", "plumb", "nearest"};
 
-// How the navigation's pose becomes the camera's (survey/navigation/vehicle_pose.h). The vehicle's
-// frame: x forward, y starboard, z down. Everything else in a rig is relative to the camera.
+// The transformation from the navigation's pose to the camera's (survey/navigation/vehicle_pose.h).
+// The vehicle's frame: x forward, y starboard, z down. Everything else in a rig is relative to the
+// camera.
 struct Mounting {
     AltitudeIs altitude_is = AltitudeIs::Axis;
     double altitude_offset_m = 0.0;                                // added to altitudes

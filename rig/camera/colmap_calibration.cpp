@@ -81,7 +81,7 @@ struct CameraLine {
     std::vector<std::string_view> words;
 };
 
-// Up to two lines that describe a camera: two are one too many.
+// Up to two lines that describe a camera, to detect more than one.
 std::vector<CameraLine> first_cameras(std::string_view text) {
     std::vector<CameraLine> cameras;
     for (std::size_t line = 1; !text.empty() && cameras.size() < 2; ++line) {

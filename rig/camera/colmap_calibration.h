@@ -16,7 +16,7 @@
 //
 // N is the unit normal, C the dome's centre, X right, Y down, Z along the axis; int_dist is from
 // the pupil to the inner face along N, int_radius that of the inner face; all in metres. The
-// indices na, ng and nw are not used: a rig names its glass, and its water has an index.
+// indices na, ng and nw are not used: a rig specifies its glass and its water.
 //
 // The first pixel's centre is (0.5, 0.5).
 //
@@ -29,7 +29,7 @@
 
 namespace aphotic {
 
-// Whether bytes begin like COLMAP's cameras.bin, which is not read.
+// Whether bytes begin like COLMAP's cameras.bin, which is not supported.
 [[nodiscard]] bool is_cameras_bin(std::string_view bytes);
 
 // Whether the first line, apart from comments, begins with a camera's number.

@@ -7,8 +7,8 @@
 // or the calibration's lens (lens_model.h). In the sled's frame: the top row forward, the right
 // column starboard. Pixel (0, 0)'s centre is (0.5, 0.5).
 //
-// Callers get a lens's rays here. Besides, scene_gen/rig_sdl.h knows pinholes, which it describes
-// to POV-Ray. The reference has its own lenses (validation/).
+// Callers use these rays and do not know the lens. The exception is scene_gen/rig_sdl.h, which
+// describes pinholes to POV-Ray. The reference has its own lenses (validation/).
 #pragma once
 
 #include "rig/camera/camera.h"
@@ -19,11 +19,11 @@
 
 namespace aphotic {
 
-// Unit vector for the point (column, row) of the image. Outside the image there may be none, which
-// is an InputError.
+// Unit vector for the point (column, row) of the image. An InputError if the model has none, which
+// is possible only outside the image.
 [[nodiscard]] Eigen::Vector3d direction_in_air(const Camera& camera, double column, double row);
 
-// For a camera without a lens model, of any length; T may be several numbers at a time.
+// For a camera without a lens model, of any length; T may be a pack of numbers.
 template <typename T>
 [[nodiscard]] std::array<T, 3> pinhole_way(const Camera& camera, const T& column, const T& row) {
     return {(0.5 * camera.height_px - row) * camera.pixel_pitch_m,
@@ -31,7 +31,7 @@ template <typename T>
             T(camera.focal_length_m)};
 }
 
-// The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.
+// The largest angle of any pixel off the camera's axis [rad], in air; in water it is no larger.
 [[nodiscard]] double half_view_rad(const Camera& camera);
 
 // An image with different pixels, larger by this factor, about the same middle: the same view if it
@@ -50,7 +50,7 @@ struct Pinhole {
 // port.
 [[nodiscard]] bool is_in_view(const Camera& camera, const Eigen::Vector3d& point_m, double factor);
 
-// Lenses of the same signature have the same view; by key, in words and numbers.
+// Lenses of the same signature have the same view. By key, as text.
 [[nodiscard]] std::map<std::string, std::string> lens_signature(const Camera& camera);
 
 }  // namespace aphotic

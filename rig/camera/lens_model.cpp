@@ -100,7 +100,7 @@ Vector2d image_plane_point(const LensModel& lens, const Vector2d& point_px) {
     return {a, b};
 }
 
-// How far off the axis the model is valid: up to where the image no longer grows.
+// The largest angle off the axis for which the model is valid: beyond, the image no longer grows.
 double reach_rad(const LensModel& lens) {
     constexpr int kSteps = 2000;
     constexpr double kMost_rad = 0.5 * std::numbers::pi * (1.0 - 1e-3);

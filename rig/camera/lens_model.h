@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A lens as calibrations describe it: where on the image light from a direction arrives.
+// A lens as in calibrations: the point of the image where light from a direction arrives.
 //
 //   (a, b)  = (X, Y) / Z                       rectilinear
 //           = (X, Y) theta / hypot(X, Y)       fisheye; theta: angle off the axis
@@ -16,7 +16,7 @@
 // first pixel is (0.5, 0.5): OpenCV's centres are whole numbers, so its cx and cy are half a pixel
 // less.
 //
-// It is valid as far from the axis as s r increases with r, and to less than 90 degrees.
+// The model is valid as far from the axis as s r increases with r, and below 90 degrees.
 //
 // With all coefficients 0 it is a pinhole, or an equidistant fisheye. OpenCV's plumb bob is k1, k2,
 // p1, p2, k3; its rational model has q1 to q3 for k4 to k6; its fisheye is k1 to k4 of a fisheye.
@@ -43,7 +43,7 @@ struct LensModel {
     bool operator==(const LensModel&) const = default;
 };
 
-// Where light from along (X, Y, Z) arrives: (column, row). Z > 0.
+// The point (column, row) where light from the direction (X, Y, Z) arrives. Z > 0.
 [[nodiscard]] Eigen::Vector2d image_point(const LensModel& lens, const Eigen::Vector3d& direction);
 
 // The unit direction of the light that arrives at (column, row), to 1e-14; empty where the model is

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostCoefficients = 8;  // thin prisms and tilts follow
 
-// The numbers of coefficients that OpenCV knows.
+// The numbers of coefficients that OpenCV allows.
 std::vector<std::size_t> counts_of(std::string_view model) {
     if (model == "plumb_bob") return {4, 5};
     if (model == "rational_polynomial") return {8, 12, 14};
@@ -23,7 +23,7 @@ std::vector<std::size_t> counts_of(std::string_view model) {
     return {4, 5, 8, 12, 14};
 }
 
-// Empty if the file has none.
+// Empty if the file names none.
 std::string model_of(const CalibrationKeys& keys) {
     std::string model;
     if (keys.has("distortion_model")) {

@@ -6,8 +6,8 @@
 //   camera_matrix             data of 3 x 3: fx 0 cx, 0 fy cy, 0 0 1
 //   distortion_coefficients   data: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tx ty]]]]; of a fisheye
 //                             k1 k2 k3 k4
-//   distortion_model          plumb_bob, rational_polynomial, equidistant or fisheye; may be
-//   missing fisheye_model             1 of a fisheye; may be missing
+//   distortion_model          plumb_bob, rational_polynomial, equidistant or fisheye; optional
+//   fisheye_model             1 for a fisheye; optional
 //
 // The first pixel's centre is (0, 0). k4 to k6 are LensModel's q1 to q3. Thin prisms s and a tilted
 // sensor t must be 0.

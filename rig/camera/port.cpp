@@ -33,8 +33,8 @@ WaterRay ray_across_axis(const PortWindow& port,
 }
 
 // Refraction at a face with this normal, on the light's far side, from one index into another.
-// Never totally reflected: glass and water are denser than air, and light that came in from air
-// gets out.
+// Total reflection does not occur: glass and water are denser than air, and light that entered from
+// air leaves again.
 Vector3d refracted(const Vector3d& direction, const Vector3d& normal, double from, double into) {
     const double ratio = from / into;
     const double cosine = direction.dot(normal);
@@ -54,7 +54,7 @@ WaterRay ray_through_tilted(const PortWindow& port,
             .direction = refracted(in_glass, port.normal, glass_index, water_index)};
 }
 
-// Along the ray from inside to the sphere about the origin.
+// The distance along the ray from inside to the sphere about the origin.
 double way_out_m(const Vector3d& from_m, const Vector3d& direction, double radius_m) {
     const double along = from_m.dot(direction);
     return std::sqrt(along * along - from_m.squaredNorm() + radius_m * radius_m) - along;

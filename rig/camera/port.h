@@ -14,8 +14,9 @@
 //
 // Dome: both faces are spheres about one centre. With the centre at the pupil no ray is bent.
 //
-// Callers get a port's rays here. Besides, ports are known to the rig's reader, and to scene_gen/
-// for POV-Ray, which traces the glass itself. The reference has its own ports (validation/).
+// Callers use these rays and do not know the port. The exceptions are the rig's reader, and
+// scene_gen/ for POV-Ray, which traces the glass itself. The reference has its own ports
+// (validation/).
 #pragma once
 
 #include "spectral/refractive_index.h"
@@ -42,9 +43,9 @@ struct PortWindow {
     std::optional<Dome> dome{};                         // empty for a flat port
 };
 
-using Port = std::optional<PortWindow>;  // none: the pupil is in the water
+using Port = std::optional<PortWindow>;  // empty: the pupil is in the water
 
-// Where light enters the water on its way to a pixel, reversed: origin and unit direction.
+// The path of a pixel's light in the water, reversed: origin at the port and unit direction.
 struct WaterRay {
     Eigen::Vector3d origin_m;
     Eigen::Vector3d direction;
@@ -57,7 +58,7 @@ struct WaterRay {
                                       double lambda_nm,
                                       double water_index);
 
-// Flat and across the camera's axis.
+// Whether the port is flat and perpendicular to the camera's axis.
 [[nodiscard]] bool is_across_axis(const PortWindow& port);
 
 // From the pupil to the water, along the axis [m].

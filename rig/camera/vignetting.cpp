@@ -27,7 +27,7 @@ double angle_in_air_rad(const Camera& camera, double column, double row) {
 
 double factor(const NaturalVignetting& natural, const Camera& camera, double column, double row) {
     const double cosine = direction_in_air(camera, column, row).z();
-    // Squares for the usual exponents, and a power for the others.
+    // A product for the usual exponent, and a power for the others.
     if (natural.exponent == 4.0) return cosine * cosine * cosine * cosine;
     return std::pow(std::max(cosine, 0.0), natural.exponent);
 }

@@ -4,11 +4,11 @@
 // for all wavelengths.
 //
 //   Natural     V = cos^n theta, n = 4 by default     theta: the pixel's angle off the axis in air
-//   Radial      V = 1 + a1 p^2 + a2 p^4 + a3 p^6      p: distance from the principal point, of half
-//                                                     the image's diagonal 1
+//   Radial      V = 1 + a1 p^2 + a2 p^4 + a3 p^6      p: distance from the principal point over
+//                                                     half the image's diagonal
 //   Tabulated   V over theta, straight lines between rows
 //
-// On the axis V is 1, unless a table says otherwise. Radial is the form of panorama tools. The
+// On the axis V is 1, unless a table gives another value. Radial is the form of panorama tools. The
 // reference has its own V (validation/).
 #pragma once
 
@@ -49,7 +49,7 @@ using Vignetting = std::variant<NaturalVignetting, RadialVignetting, TabulatedVi
 // V at the point (column, row) of the image; 1 without vignetting.
 [[nodiscard]] double vignetting_at(const Camera& camera, double column, double row);
 
-// The radial form that is closest to the camera's own over its image; 0 without vignetting.
+// The radial form closest to the camera's own over its image; 0 without vignetting.
 [[nodiscard]] RadialVignetting radial_like(const Camera& camera);
 
 // At every pixel's centre, row by row.
@@ -63,7 +63,7 @@ void require_bright(const Camera& camera);
 [[nodiscard]] TabulatedVignetting parse_vignetting_csv(const std::string& file_name,
                                                        std::string_view text);
 
-// Same signature: the same vignetting of the same camera.
+// Equal signatures mean equal vignetting for the same camera.
 [[nodiscard]] std::string vignetting_signature(const Vignetting& vignetting);
 
 }  // namespace aphotic

@@ -8,8 +8,9 @@
 namespace aphotic {
 namespace {
 
-// Where the quoted string that begins here ends: triple quotes end at three, and up to two more of
-// their own; any other string with its line, if only in an error.
+// The end of the quoted string that begins here. Triple quotes end at three, with up to two more
+// that belong to the string; any other string ends with its line at the latest, in which case it is
+// an error.
 std::size_t end_of_text(std::string_view toml, std::size_t at) {
     const char quote = toml[at];
     const std::string long_mark(3, quote);

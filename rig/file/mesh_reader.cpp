@@ -39,7 +39,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
-// As much of a line as a message shows.
+// The part of a line shown in a message.
 std::string shown(const std::vector<std::string_view>& words) {
     constexpr std::size_t kMostLetters = 200;
     const std::string line = fmt::format("{}", fmt::join(words, " "));
@@ -74,10 +74,10 @@ struct Polygon {
 
 struct Faces {
     std::vector<Polygon> polygons;  // without excess ones
-    std::size_t triangles = 0;      // that all are cut into
+    std::size_t triangles = 0;      // total after cutting
 };
 
-// The lines that matter, and their relevant words.
+// Reads the relevant lines.
 Faces read_lines(const std::string& text,
                  const std::string& file_name,
                  std::size_t most_triangles,
@@ -119,7 +119,7 @@ Faces read_lines(const std::string& text,
     return faces;
 }
 
-// Before any polygon is cut: that takes the longer the more there are.
+// Called before any polygon is cut, since cutting time grows with their number.
 void require_room(std::size_t triangles, const std::string& file_name, std::size_t most) {
     if (triangles > 0 && triangles <= most) return;
     throw InputError("{}: found {}; allowed: 1 to {} triangles",

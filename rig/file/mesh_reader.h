@@ -23,7 +23,7 @@ namespace aphotic {
 
 inline constexpr std::size_t kMostTriangles = 1'000'000;
 
-// For a polygon: cutting it takes at least the square of their number.
+// The limit per polygon: the time for cutting grows at least with the square of their number.
 inline constexpr std::size_t kMostCorners = 256;
 
 // A triangle whose height is below this share of its longest side has no plane in single precision.
@@ -36,15 +36,15 @@ inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20U;
                               const std::string& obj,
                               const Eigen::Vector3d& position_m);
 
-// The same of a survey's mesh: vertices as the file has them, in any frame, and triangles without
-// area among the others.
+// The same for a survey's mesh: vertices unchanged, in any frame, and triangles without area
+// included.
 [[nodiscard]] Mesh parse_obj(const std::string& file_name,
                              const std::string& obj,
                              std::size_t most_triangles);
 
-// A polygon as triangles from one corner to the others: from one that sees them all, so that all
-// triangles are the same way round, and of these from the one with the shortest diagonals.
-// Triangles of no area are left out. None where no corner sees all others.
+// Cuts a polygon into triangles from one corner to the others: a corner that sees them all, so that
+// all triangles have the same orientation, and of these the one with the shortest diagonals.
+// Triangles without area are omitted. Empty if no corner sees all others.
 [[nodiscard]] std::vector<std::array<int, 3>> cut(const Mesh& mesh, std::vector<int> corners);
 
 }  // namespace aphotic

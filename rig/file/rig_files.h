@@ -34,7 +34,7 @@ class RigFiles {
                    std::string_view key,
                    CurveRole role,
                    const std::string& absent);
-    // Any table, from a file named by the key.
+    // Any table, from a file that the key names.
     Table table(const Section& section, std::string_view key, const std::string& name);
 
     [[nodiscard]] std::filesystem::path path_of(const std::string& name) const;

@@ -41,7 +41,7 @@ namespace fs = std::filesystem;
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kMetresPerMicrometre = 1e-6;
 
-// A rig with a thousand strobes, each written out, has a fiftieth of this size.
+// A rig with a thousand strobes, each in full, has a fiftieth of this size.
 constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
 
 // For all strobes together: POV-Ray's limit in clear water (pov_scene.cpp).
@@ -78,8 +78,7 @@ constexpr Bounds kConeExponent{0.0, 1000.0};
 constexpr Bounds kFwhmDeg{1.0, 179.9};
 constexpr Bounds kTurnDeg{-360.0, 360.0};
 constexpr Bounds kOpticsMm{0.01, 100000.0};
-// Closer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
-// to 1e-4.
+// Closer to 0, the light through a lens varies so steeply that its flux is not integrated to 1e-4.
 constexpr Bounds kOpticsLengthMm{0.05, 100000.0};
 constexpr Bounds kWindowIndex{1.0, 3.0};
 constexpr Bounds kFlux{0.0, 1e12};
@@ -91,11 +90,11 @@ constexpr Bounds kEmitterMm{0.0, 10000.0};
 const std::string kOneKindOfBeam =
     "found together with another kind of beam; allowed: one of cones, fwhm_deg, table, or "
     "diffuser_mm with its lens";
-// An object's size: POV-Ray skips blockers within a millimetre of what they shade.
+// An object's size: POV-Ray ignores objects within a millimetre of the surface that they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
 
-// How navigation measures altitude.
+// The direction in which navigation measures altitude.
 void read_altitude_meaning(Section& sled, Mounting& mounting) {
     mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
     if (!sled.has("altitude_is")) return;
@@ -159,7 +158,7 @@ PortWindow read_port(Section section) {
     return port;
 }
 
-// Everything except the glass is the calibration's.
+// Everything except the glass comes from the calibration.
 PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated) {
     for (const std::string_view key :
          {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
@@ -204,7 +203,8 @@ Sensor read_response(Section& camera, RigFiles& files) {
         return read_response_table(camera.section("response", allowed), files);
     }
     const std::string name = camera.text("response", allowed);
-    // A file does not say whether it counts energy or photons, so its name alone is not enough.
+    // A file does not state whether its response is per energy or per photon, so its name alone is
+    // not enough.
     if (names_a_file(name)) camera.found_but("response", allowed);
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
@@ -314,7 +314,7 @@ void read_place(Section& camera, Mounting& mounting) {
     }
 }
 
-// Keys that no render needs, but surveys do.
+// Keys used by surveys, not by renders.
 Readout read_readout(Section& camera, bool is_mono) {
     const auto optional = [&](std::string_view key, Bounds bounds) {
         return camera.has(key) ? std::optional(camera.number(key, bounds)) : std::nullopt;
@@ -690,7 +690,7 @@ std::vector<Object> read_objects(Section& top,
     return objects;
 }
 
-// A refractive index is in the list as the line between its range's ends: only the range matters.
+// A refractive index is listed as a straight line over its range, since only the range matters.
 Spectrum range_of_index(const std::string& what, WavelengthRange range) {
     return {
         fmt::format("refractive index of {}", what), {range.first_nm, range.last_nm}, {1.0, 1.0}};

@@ -19,10 +19,10 @@ namespace aphotic {
 
 inline constexpr double kLeastScale = 0.001;  // of camera.scale
 
-// User tables named in the file are looked up in its folder.
+// User tables named in the file are read from its folder.
 [[nodiscard]] Rig read_rig(const std::filesystem::path& file);
 
-// The same from text; file_name is for messages, tables are looked up in folder.
+// The same from text; file_name is for messages, tables are read from folder.
 [[nodiscard]] Rig parse_rig(std::string_view toml,
                             const std::string& file_name,
                             const std::filesystem::path& folder);

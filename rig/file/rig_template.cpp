@@ -37,7 +37,7 @@ const Template& template_named(std::string_view name) {
     return *std::ranges::find(templates(), name, &Template::name);
 }
 
-// A scene's own heading says what it shows here.
+// Without the scene's own heading, which describes the example.
 std::string_view without_heading(std::string_view text) {
     return text.substr(text.find("\n\n") + 1);
 }
@@ -49,7 +49,7 @@ std::string_view next_line(std::string_view& text) {
     return line;
 }
 
-// What stands before the mark, without spaces; empty where there is no mark.
+// The text before the mark, without spaces; empty without a mark.
 std::string marked_value(std::string_view line) {
     const std::size_t mark = line.find(kMark);
     std::string value(mark == std::string_view::npos ? "" : line.substr(0, mark));

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rigs to begin with: files of scenes/ that travel inside the library. A line that a user has to
-// measure says so behind its value, "# measure: the lamp's data sheet". It counts as unmeasured
-// until its value differs from the template's, or until the mark is gone, which says that the
-// template's value is right.
+// Rigs to begin with: files of scenes/, embedded in the library. A value that a user has to measure
+// is followed by a mark, "# measure: the lamp's data sheet". It counts as unmeasured until it
+// differs from the template's, or until the mark is removed, which confirms the template's value.
 #pragma once
 
 #include "spectral/curve_loader.h"
@@ -16,15 +15,15 @@
 
 namespace aphotic {
 
-// Each as a file of scenes/ is called.
+// Each has the name of its file in scenes/.
 [[nodiscard]] std::span<const BuiltinTable> template_files();
 
 // habcam, led, auv.
 [[nodiscard]] std::vector<std::string> template_names();
 
 struct RigTemplate {
-    std::string rig;                  // its text, with a heading that says where it comes from
-    std::vector<BuiltinTable> files;  // what it names, to be beside it
+    std::string rig;                  // its text, with a heading that states its origin
+    std::vector<BuiltinTable> files;  // the files that it names
 };
 [[nodiscard]] RigTemplate rig_template(std::string_view name);
 
@@ -33,7 +32,7 @@ struct UnmeasuredLine {
     std::string text;  // "focal_length_mm = 12.0"
 };
 
-// None in a rig that does not begin as a template does.
+// Empty for a rig that does not begin like a template.
 [[nodiscard]] std::vector<UnmeasuredLine> unmeasured_lines(std::string_view rig);
 
 }  // namespace aphotic

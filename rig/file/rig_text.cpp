@@ -86,7 +86,7 @@ void for_tables(toml::node& node, const F& f) {
     }
 }
 
-// As a value on a line of its own: tables in braces.
+// A value on a single line, with tables in braces.
 std::string toml_of(const toml::node& node) {
     toml::table pair{{"key", node}};
     pair.is_inline(true);
@@ -131,7 +131,7 @@ class TextPlaces {
         while (first > line && is_of_key(text_[first - 1])) --first;
         return {first, byte_of(value.source().end)};
     }
-    // After its line's end; for the last line, the text's end.
+    // The position after its line's end; for the last line, the text's end.
     [[nodiscard]] std::size_t end_of_line(std::size_t at) const {
         return std::min(text_.find('\n', at), text_.size() - 1) + 1;
     }
@@ -189,7 +189,7 @@ std::size_t last_end(const toml::table& table, const TextPlaces& places) {
     return end;
 }
 
-// [beam.narrow] makes a table `beam` too, which has no lines of its own.
+// [beam.narrow] also makes a table `beam`, which has no lines of its own.
 bool has_no_place(const toml::table& table) {
     return std::ranges::any_of(table, [&](const auto& entry) {
         return entry.second.is_table() && entry.second.source().begin == table.source().begin;
@@ -236,7 +236,7 @@ TextRange with_its_surroundings(const std::string& text, TextRange range) {
     return range;
 }
 
-// A table without braces is in many lines: each is removed separately.
+// A table without braces spans many lines, each of which is removed separately.
 void add_ranges(const toml::key& key,
                 const toml::node& node,
                 const TextPlaces& places,
@@ -281,7 +281,7 @@ void RigText::put(std::string_view key, const std::string& value) {
     const toml::table root = toml::parse(text_);
     const TextPlaces places(text_);
     std::vector<std::string> steps = steps_of(key);
-    std::vector<const toml::node*> nodes{&root};  // on the way, as far as it exists
+    std::vector<const toml::node*> nodes{&root};  // on the path, as far as it exists
     while (nodes.size() <= steps.size()) {
         const toml::node* next = child(*nodes.back(), steps[nodes.size() - 1]);
         if (next == nullptr) break;

@@ -6,9 +6,9 @@
 //   water.multiple      sled.altitude_m      strobe.fore.power      strobe.1.position_m
 //   beam.fresnel.cones  camera.vignetting.radial
 //
-// A value is replaced in place; a new key follows the last of its table. All else, comments and
-// layout included, stays as its author wrote it. Numbers have the fewest digits that read back to
-// the same number.
+// A value is replaced in place; a new key follows the last of its table. Everything else, including
+// comments and layout, is unchanged. Numbers have the fewest digits that read back to the same
+// number.
 #pragma once
 
 #include "rig/rig.h"
@@ -32,7 +32,7 @@ class RigText {
     [[nodiscard]] std::optional<std::string> word(std::string_view key) const;
 
     // Creates the tables on the way to it. An InputError if there is no such strobe or object, or
-    // if what should be a table is not.
+    // if a value stands where a table is needed.
     void set(std::string_view key, double value);
     void set(std::string_view key, const std::string& value);
     void set(std::string_view key, const std::vector<double>& values);
@@ -40,14 +40,13 @@ class RigText {
     void set_toml(std::string_view key, std::string_view value);
     // Including its line, if nothing else is on it. A table is removed with all its contents.
     void erase(std::string_view key);
-    // Takes a table from another rig, under a different path here; the table at that path is
-    // removed.
+    // Copies a table from another rig to the path `place`; a table there is removed.
     void copy(const RigText& rig, std::string_view table, std::string_view place);
 
-    // Files named in the text are looked up here.
+    // The folder of the files named in the text.
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] const std::string& text() const { return text_; }
-    // Copies these to another folder, unless they are there already.
+    // Copies these files to another folder, unless they exist there.
     void copy_files(const std::filesystem::path& folder) const;
     // The rig as rig/file/rig_reader.h reads it.
     [[nodiscard]] Rig rig() const;

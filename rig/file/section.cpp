@@ -46,7 +46,7 @@ bool Section::has(std::string_view key) {
 
 const toml::node& Section::required(std::string_view key, const std::string& allowed) {
     if (has(key)) return *table_.get(key);
-    // Most often the key exists, but is misspelt.
+    // Most often the key is present, but misspelt.
     for (const auto& [name, node] : table_) {
         if (is_known(name.str())) continue;
         if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;

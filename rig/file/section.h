@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // One table of a rig file, as its readers access it: every key by name, its type and bounds
-// checked, and at the end an error for any key that was not asked for. Every error is an InputError
+// checked, and at the end an error for any key that was not read. Every error is an InputError
 // "file:line: key: what was found; allowed: ...".
 #pragma once
 
@@ -36,7 +36,7 @@ struct Bounds {
 
 [[nodiscard]] std::string allowed_number(Bounds bounds);
 
-// One table of the rig file, which knows its position and which of its keys were asked for.
+// One table of the rig file, with its position and the record of keys that were read.
 class Section {
   public:
     Section(const toml::table& table, std::string path, const std::string& file)
@@ -101,11 +101,11 @@ class Section {
 
     [[nodiscard]] std::vector<std::string> keys() const;
 
-    // Call when every known key has been asked for.
+    // Call after reading every known key.
     void refuse_unknown_keys() const;
 
-    // Call before any is asked for: if another key is there instead of a required one, that is the
-    // cause.
+    // Call before reading any key: if another key is present instead of a required one, the message
+    // then names the cause.
     void refuse_keys_but(std::string_view known);  // separated by commas
 
     // Alternative ways to give one value.
@@ -122,8 +122,8 @@ class Section {
         }
     }
 
-    // Strings of a rig end up in scenes, settings, pages and messages, where a newline or an escape
-    // would have a meaning.
+    // Strings of a rig are copied to scenes, settings, pages and messages, where a newline or an
+    // escape would have a meaning.
     void require_one_line(const toml::node& node,
                           std::string_view key,
                           std::string_view text) const;
