@@ -48,7 +48,7 @@ std::string scene_name(std::string_view name) {
 std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
     std::vector<NamedSpectrum> names;
     for (const Spectrum& spectrum : spectra) {
-        // POV-Ray's view of a name: two files that differ only in accents have the same one.
+        // The name as POV-Ray reads it: two files that differ only in accents have the same one.
         const std::string name = scene_name(spectrum.short_name());
         int same_name = 1;
         bool is_there = false;

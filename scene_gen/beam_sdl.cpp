@@ -35,7 +35,7 @@ std::string node_sdl(double at, double value) {
     return fmt::format("{},<{},0>", sdl_number(at), sdl_number(value));
 }
 
-// The planes of one table follow each other in the spline at this distance, so that none reaches
+// The planes of one table follow each other in the spline at this distance, so that none extends
 // into the next.
 double plane_distance(const BeamTable& table) {
     return std::ceil(table.vertical_rad.back() - table.vertical_rad.front()) + 1.0;
@@ -49,7 +49,7 @@ std::string up_to_sdl(const std::string& angle, double most, const std::string& 
     return fmt::format("select({} - {}, 0, {})", sdl_number(most), angle, value);
 }
 
-// 0 past the table's end, without the tests that no direction needs: each costs time.
+// 0 beyond the table's end, with only those tests that some direction needs, since each costs time.
 std::string within_sdl(const BeamTable& table, const std::string& value) {
     const std::vector<double>& v = table.vertical_rad;
     const std::vector<double>& h = table.horizontal_rad;
@@ -80,7 +80,7 @@ std::string planes_sdl(const BeamTable& table, const std::string& name) {
         return sdl + function_sdl(
                          name + "_At", "v", within_sdl(table, fmt::format("{}_Nodes (v).x", name)));
     }
-    // c counts the planes, k is the one before it.
+    // c is the place among the planes, k the plane before it.
     const std::string between = fmt::format(
         "(1 - (c - k)) * {0}_Nodes (k * {1} + v).x + (c - k) * {0}_Nodes ((k + 1) * {1} + v).x",
         name,
@@ -112,8 +112,8 @@ std::string table_value_sdl(const BeamTable& table, const std::string& name) {
         name);
 }
 
-// In units of the disc, for slopes x/z and y/z. A sharp image is the whole disc within the
-// rectangle's slopes.
+// In units of the disc's area, for slopes x/z and y/z. For a sharp image it is the whole disc
+// within the rectangle's slopes.
 std::string optics_value_sdl(const BeamOptics& optics) {
     const double radius_m = 0.5 * optics.aperture_m;
     const double blur_m = std::abs(1.0 - optics.distance_m / optics.focal_length_m) * radius_m;
@@ -235,7 +235,7 @@ std::string beam_sdl(const Beam& beam) {
 std::string pattern_functions_sdl(const Beam& beam, const std::string& name) {
     std::string sdl;
     std::string last = name;
-    // From the outside inwards, each named by what is still to come.
+    // From the outermost function inwards, each named by the functions that follow.
     const bool is_turned = beam.turn_rad != 0.0;
     if (is_turned) last = name + "_Turned";
     const std::string bare = beam.window ? name + "_Bare" : last;

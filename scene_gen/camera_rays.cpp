@@ -17,15 +17,15 @@ using Eigen::Vector3d;
 
 namespace {
 
-// The points of a grid column or row are where POV-Ray looks for them, and have the ray of the
-// place that a pixel sees.
+// The points of a grid's columns or rows are at the places that POV-Ray looks up, with the rays of
+// the places that pixels see.
 struct Line {
     double at_px;
     double sees_px;
 };
 
-// From the first pixel to the last, where POV-Ray looks for all of the last one's rays at once.
-// Antialiased pixels come no closer to their borders than an 18th of a pixel.
+// From the first pixel to the last, whose rays POV-Ray all looks up at one place. Rays of
+// antialiased pixels are at least an 18th of a pixel from the pixel's borders.
 std::vector<Line> lines_along(int pixels, int cells) {
     constexpr double kNoRay = 1.0 / 32.0;
     constexpr double kBeyond = 0.25;
@@ -46,13 +46,13 @@ std::vector<Line> lines_along(int pixels, int cells) {
 struct Grid {
     std::vector<Line> columns;
     std::vector<Line> rows;
-    double depth;  // m: of what is interpolated, (x, y, m z)
+    double depth;  // m, for the interpolation of (x, y, m z)
 
     [[nodiscard]] std::size_t points() const { return columns.size() * rows.size(); }
     [[nodiscard]] std::size_t faces() const { return 2 * (columns.size() - 1) * (rows.size() - 1); }
 };
 
-// Of square cells. POV-Ray counts from below, so the last row is the image's first.
+// A grid of square cells. POV-Ray counts from below, so the last row is the image's first.
 Grid grid_of_cells(const Camera& camera, int cells) {
     const auto along = [&](int pixels) {
         const double share = double(pixels) / std::max(camera.width_px, camera.height_px);
@@ -95,9 +95,10 @@ double error_rad(const Camera& camera, const Grid& grid) {
 
 Grid grid_of(const Camera& camera) {
     constexpr int kFirstCells = 16;
-    // Inside a face a quadratic is off by up to 4/3 of its error in the middles of its sides.
+    // Inside a face, the interpolation of a quadratic errs by up to 4/3 of its error in the middles
+    // of the sides.
     constexpr double kOnSidesRad = 0.75 * kRayErrorRad;
-    constexpr double kRoom = 1.02;  // errors fall with the square of the cells, but for so much
+    constexpr double kRoom = 1.02;  // errors fall with the square of the cells, within this
     const int longest = std::max(camera.width_px, camera.height_px);
     for (int cells = kFirstCells;;) {
         Grid grid = grid_of_cells(camera, cells);
@@ -107,8 +108,8 @@ Grid grid_of(const Camera& camera) {
     }
 }
 
-// Corners are in the order that POV-Ray keeps. In any other it exchanges the first two, and their
-// normals only if these differ by 1e-5.
+// Corners are in the order that POV-Ray does not change. In any other order it exchanges the first
+// two, but their normals only if these differ by 1e-5.
 std::string faces_sdl(const Grid& grid) {
     std::string faces;
     const std::size_t across = grid.columns.size();

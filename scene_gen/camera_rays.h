@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The rays of a calibrated lens for POV-Ray's mesh_camera, which looks a pixel up in the mesh by uv
-// (distribution 3) and uses the interpolated normal of the face that it finds as the ray. The mesh
-// is a grid over the image: each point (column, row) has its ray as normal, and as uv
+// (distribution 3) and uses the face's interpolated normal as the ray. The mesh is a grid over the
+// image: each point (column, row) has its ray as normal, and as uv
 //
 //   u = (column - 1/2) / width,  v = 1 - (row - 1/2) / height
 //
-// since POV-Ray omits the half pixel. It never looks beyond column width - 1 or above row 1, and so
-// looks there for all of the last column's pixels and all of the first row's.
+// since POV-Ray omits the half pixel. It never looks beyond column width - 1 or above row 1, so all
+// rays of the last column and of the first row are looked up there.
 //
 // The error of POV-Ray's ray between two points, with a and b the rays there and d the lens's own
 // halfway,
@@ -30,10 +30,10 @@ namespace aphotic {
 
 inline constexpr std::string_view kCameraRaysFile = "aphotic_rays.inc";
 
-// A ray off by this much changes light by 5e-5, a tenth of a half float, where light changes e-fold
-// in 2.3 degrees of view: anything steeper counts as an edge (validation/tracer.h). It is 0.01
-// pixels of a camera of 24 megapixels. A finer grid costs POV-Ray time, since it searches the faces
-// one after another: twice the time for half the error.
+// A ray off by this much changes light by 5e-5, a tenth of a half float's step, where light changes
+// e-fold in 2.3 degrees of view; anything steeper counts as an edge (validation/tracer.h). It is
+// 0.01 pixels of a camera of 24 megapixels. A finer grid costs time, since POV-Ray searches the
+// faces one after another: twice the time for half the error.
 inline constexpr double kRayErrorRad = 2e-6;
 
 // POV-Ray has no rays for narrower images: it does not look at u <= -0.1.

@@ -15,13 +15,14 @@
 namespace aphotic {
 namespace {
 
-// Over these points of the range light is a straight line: dispersion bends it by a few per cent.
+// Between these points of the range, the effect of geometry is taken as linear: dispersion varies
+// it by a few per cent.
 constexpr int kGeometryPoints = 65;
 constexpr double kBlackShare = 1e-8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Node {
-    std::size_t point = 0;  // of the geometry, and the share of the way to the next
+    std::size_t point = 0;  // of the geometry; then the share of the way to the next
     double share = 0.0;
     SourceLight light;
     std::array<double, kChannels> response{};  // times the node's width
@@ -140,7 +141,7 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
         for (const RuleSignals& pixel : image) {
             if (!(pixel.right[c] > kBlackShare * brightest)) continue;
             const double off = std::abs(pixel.found[c] / pixel.right[c] - 1.0);
-            // NaN is the largest of errors.
+            // NaN counts as the largest error.
             error[c] = std::isnan(off) ? kInfinite : std::max(error[c], kBetweenPixels * off);
         }
     }

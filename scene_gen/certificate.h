@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The check of a fitted rule before anything is rendered, by integrals over wavelength that share
-// nothing with the fit's (spectral/panel_quadrature.h): first over the whole family of light
-// (spectral/quadrature_certificate.h), then behind a port over the image.
+// The check of a fitted rule before anything is rendered, by integrals over wavelength that are
+// independent of the fit's (spectral/panel_quadrature.h): first over the whole family of light
+// (spectral/quadrature_certificate.h), then, behind a port, over the image.
 //
 // Behind a port every wavelength shows its own point of the floor, and each pixel's light varies
 // over wavelength along its own curve, of which the family's tilt is an envelope. So the rule is
-// tried on the pixels themselves, at places_along() the image's sides (scene_gen/light_paths.h):
+// tested on the pixels themselves, at places_along() the image's sides (scene_gen/light_paths.h):
 //
 //   error_c = kBetweenPixels max over the places of |sum_j w_cj L_j / S_c - 1|
-//   S_c     = int L Q_c dlambda          L_j  what frame j holds, with its own refractive indices
+//   S_c     = int L Q_c dlambda          L_j  light of frame j, with its own refractive indices
 //
-// Pixels darker than black, 1e-8 of the brightest, are ignored. So is light that dispersion carries
-// over the edge of a cone: such pixels are on an edge. Objects are omitted: on them the tilt is
-// stated, not measured (scene_gen/light_paths.h).
+// Pixels darker than black, 1e-8 of the brightest, are ignored. So is light that dispersion shifts
+// across the edge of a cone: such pixels are on an edge. Objects are omitted: on them the tilt is
+// assumed, not computed (scene_gen/light_paths.h).
 #pragma once
 
 #include "rig/rig.h"
@@ -28,12 +28,12 @@ namespace aphotic {
 // The maximum may lie between the places.
 inline constexpr double kBetweenPixels = 1.02;
 
-// Behind a port, by channel, for the bare floor lit at the wavelengths.
+// The error behind a port, by channel, for the bare floor lit at the wavelengths.
 [[nodiscard]] std::array<double, kChannels> port_error(const Rig& rig,
                                                        std::span<const PlannedWavelength> rule);
 
-// Raises the rule's quality to the error found. in_view: the same rule's wavelengths if the bare
-// floor is in view; null for a user's scene.
+// Raises the errors in the rule's quality to those found. in_view: the same rule's wavelengths if
+// the bare floor is in view; null for a user's scene.
 void certify(const Rig& rig,
              const QuadratureFitter& fitter,
              std::span<const FrameLight> frames,

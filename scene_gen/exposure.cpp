@@ -25,7 +25,7 @@ constexpr std::size_t kGridOfFloor = 33;  // points along each side of the image
 constexpr double kMarginView = 1.5;       // a point this far outside the image still counts
 constexpr int kColourLimitLog2 = 120;     // colours are single precision: 2^128 overflows
 
-// How far another point of the same grid cell may lie, in angle, seen from a place.
+// The largest angle to another point of the same grid cell, seen from a place.
 double reach_rad(const std::vector<Vector3d>& neighbours_m,
                  const Vector3d& at_m,
                  const Vector3d& from_m) {
@@ -70,8 +70,8 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
         if (!samples[index]) continue;
         add_point(samples[index]->point_m, samples[index]->camera_leg_m, neighbours_of(index));
     }
-    // A lamp close to the floor can peak between the grid's points: add its foot, as far from its
-    // neighbours as the nearest grid point is from its own.
+    // The light of a lamp close to the floor can peak between the grid's points: add the point
+    // below it, as far from its neighbours as the nearest grid point is from its own.
     const Plane floor = floor_plane(rig.sled);
     for (const Strobe& strobe : rig.strobes) {
         const Vector3d foot_m =

@@ -5,7 +5,7 @@
 // POV-Ray's EXR holds half floats: relative step 2^-11 from 2^-14 to 65504, coarser below, inf
 // above. The light of each wavelength is multiplied by 2^e, chosen so that the brightest pixel is
 // at about 2^kTargetLog2 or a few octaves below; the integrator divides by it again, exactly. A
-// dark red wavelength thus uses the same digits as a bright blue one.
+// dark red wavelength thus has the same precision as a bright blue one.
 //
 //   e = floor(kTargetLog2 - log2 L_max)
 //
@@ -14,9 +14,9 @@
 //        grid's step
 //        [unit of the lamp's spectrum / (m^2 sr)]
 //
-// An object counts with all strobes that may light it at once, each at its least distance, straight
-// on, and mirrored if the object has a highlight: more than any of its points can receive, so that
-// it needs no grid.
+// An object counts with all strobes that may light it at once, each at its least distance, at
+// normal incidence, and mirrored if the object has a highlight. That is more than any of its points
+// can receive, so it needs no grid.
 //
 // The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
 #pragma once

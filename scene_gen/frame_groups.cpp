@@ -11,7 +11,8 @@ namespace aphotic {
 
 namespace {
 
-// Where the ray of a point `inward_px` from the corner, towards the middle, meets the plane.
+// The intersection with the plane of the ray of a point `inward_px` from the corner, towards the
+// middle.
 Eigen::Vector3d corner_point_m(const Rig& rig,
                                const std::array<double, 2>& corner,
                                double inward_px,

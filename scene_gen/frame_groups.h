@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which wavelengths share a frame, and the refractive indices with which it is rendered.
+// The wavelengths that share a frame, and the refractive indices with which it is rendered.
 //
 // A frame has three channels, which POV-Ray never mixes, so three wavelengths share it. Behind a
-// dispersing port they may do so only if nearly equal: a frame has one set of indices, and a
-// wavelength rendered with another's is shifted by
+// dispersing port this requires nearly equal wavelengths: a frame has one set of indices, and the
+// image of a wavelength rendered with another's indices is shifted by
 //
 //   shift = |P(lambda_a) - P(lambda_b)| / |P(lambda_b) - P'(lambda_b)|     [pixel]
 //
-// P   where the ray of the image's corner meets the plane at the sled's altitude across the
+// P   intersection of the corner's ray with the plane at the sled's altitude across the
 //     camera's axis            P'  the same, one pixel nearer to the image's middle
 //
-// Neighbouring wavelengths share a frame as long as the first and the last are shifted against each
-// other by no more than a bound; it is rendered at the wavelength halfway.
+// Neighbouring wavelengths share a frame if the first and the last are shifted against each other
+// by no more than a bound; the frame is rendered at the wavelength halfway.
 #pragma once
 
 #include "rig/rig.h"
@@ -31,7 +31,7 @@ inline constexpr double kPixelShift = 0.25;
 struct FrameGroup {
     std::size_t first = 0;  // of the wavelengths
     std::size_t count = 0;
-    double index_nm = 0.0;  // whose refractive indices it has
+    double index_nm = 0.0;  // of the frame's refractive indices
 };
 
 // Groups of at most per_frame wavelengths, which are increasing.

@@ -19,15 +19,15 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::size_t kGridOfView = 33;
-// How far from the grid's point another wavelength may see a floor point, as a share of the path in
-// water.
+// The largest shift of a floor point, from the grid's, at other wavelengths, as a share of the path
+// in water.
 constexpr double kPortShift = 0.02;
-// A cell that spans more than this, seen from a lamp close above it, may be widest away from its
-// corners.
+// A cell that spans more than this angle, seen from a lamp close above it, may be widest away from
+// its corners.
 constexpr double kWideRad = 1.0;
 
-// The angle by which other wavelengths' rays and other lamps of an emitter may see a floor point
-// differently.
+// The angle by which the direction to a floor point may differ for other wavelengths' rays and
+// other lamps of an emitter.
 double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {
     const double reach_m =
         (rig.camera.port ? kPortShift * camera_leg_m : 0.0) + emitter_reach_m(strobe);
@@ -53,7 +53,7 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Beam& beam) {
                                   &samples[corner + kGridOfView + 1]};
             const auto seen = std::ranges::count_if(cell, [](auto* s) { return s->has_value(); });
             if (seen == 0) continue;
-            if (seen < 4) return true;  // the horizon crosses it: it reaches far
+            if (seen < 4) return true;  // the horizon crosses the cell, which extends far
             Vector3d middle_m = Vector3d::Zero();
             for (const auto* sample : cell) middle_m += 0.25 * (*sample)->point_m;
             const Vector3d towards = middle_m - strobe.position_m;

@@ -40,7 +40,7 @@ std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
     return sources;
 }
 
-// An image point's light of each kind: diffuse light and highlight of every lamp spectrum.
+// An image point's light by kind: diffuse light and highlight of every lamp spectrum.
 std::vector<double> light_at(const Rig& rig,
                              const std::vector<std::size_t>& lamp_of_strobe,
                              const WaterRay& ray,
@@ -60,8 +60,8 @@ std::vector<double> light_at(const Rig& rig,
     return kinds;
 }
 
-// How much the light of a point may change between one ray and another: each kind's change, by its
-// share of all.
+// The largest change of a point's light between one ray and another: each kind's change, weighted
+// by its share.
 double change_between(const std::vector<double>& from, const std::vector<double>& to) {
     double all = 0.0;
     double change = 0.0;
@@ -72,7 +72,7 @@ double change_between(const std::vector<double>& from, const std::vector<double>
     return all > 0.0 ? std::log1p(change / all) : 0.0;
 }
 
-// Strobes of one lamp spectrum may compensate for each other, others may not.
+// Only strobes of the same lamp spectrum can compensate for each other.
 std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
     std::vector<std::size_t> lamps;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {

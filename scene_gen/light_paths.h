@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The family of light (spectral/light_family.h) that a rig's camera can see: every lamp's
-// spectrum on every material, and bare where the floor has a highlight, over the paths of
+// The family of light (spectral/light_family.h) that a rig's camera can see: every lamp's spectrum
+// on every material, and the bare spectrum if the floor has a highlight, over the paths of
 // light/path_range.h.
 //
 // Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
 // change of light from the middle wavelength's point to it, over the image. Diffuse light and
 // highlight, and lamps of different spectra, change independently, each weighted by its share. On
-// objects, which turn away from the light and end, no such change is the largest: there it counts
-// up to kObjectTilt, growing with the shift of the image, and pixels where it is more are among the
-// edges, for which nothing is promised.
+// objects, whose surfaces turn away from the light and end, the change is unbounded: there it
+// counts up to kObjectTilt, growing with the shift of the image, and pixels with more are among the
+// edges, to which the promise does not apply.
 #pragma once
 
 #include "light/path_range.h"
@@ -33,8 +33,8 @@ inline constexpr int kMostPlaces = 65;
 // Lamps with the same spectrum are merged, and so are materials.
 [[nodiscard]] LightFamily light_family(const Rig& rig);
 
-// The materials of the light that the rig shows and is planned for, in this order: the floor's, the
-// further ones, the objects'.
+// The materials for which the rig's light is planned, in this order: the floor's, the further ones,
+// the objects'.
 [[nodiscard]] std::vector<Spectrum> materials_of(const Rig& rig);
 
 // At one wavelength, in the order of the rig's strobes and of materials_of().

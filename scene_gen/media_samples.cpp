@@ -29,7 +29,8 @@ struct Piece {
     Interval all;
 };
 
-// Where the ray runs within a half angle of a lamp's axis: a convex cone's, so one interval.
+// The part of the ray within a half angle of a lamp's axis. The cone is convex, so it is one
+// interval.
 std::optional<Interval> within_cone(const Piece& piece,
                                     const Vector3d& lamp_m,
                                     const Vector3d& axis,

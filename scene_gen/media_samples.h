@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil that POV-Ray's media find along a ray, to know its error beforehand.
+// The veil that POV-Ray's media compute along a ray, to determine its error beforehand.
 //
 // `method 2` with `intervals 1`, `jitter 0` and `samples N` is the midpoint rule of N samples, in
-// each lit interval of the ray: for a spotlight what its cone cuts out, for a point light all of
-// it, merged where they overlap. A cone's edge inside another's light would lie inside an interval,
-// with an error of first order in 1/N; that of smooth light is second order. So invisible surfaces
-// cut the ray at sharp edges (plugin/include/aphotic.inc), unless the scene is a user's, where they
-// would bend rays in glass. Steps of tables and images, and behind windows, are not cut.
+// each lit interval of the ray: for a spotlight the part within its cone, for a point light the
+// whole ray, merged where they overlap. A cone's edge inside another's light would lie inside an
+// interval, with an error of first order in 1/N; that of smooth light is second order. So invisible
+// surfaces cut the ray at sharp edges (plugin/include/aphotic.inc), unless the scene is a user's,
+// where they would bend rays in glass. Steps of tables and images, and behind windows, are not cut.
 //
 // Objects and their shadows are omitted.
 #pragma once
@@ -33,7 +33,7 @@ struct MediaSampling {
     bool cuts_edges = true;  // of cones
 };
 
-// By strobe, the samples as nodes, weights by lobe. lamps: the grid of each strobe's emitter.
+// The samples as nodes, by strobe, with weights by lobe. lamps: the grid of each strobe's emitter.
 [[nodiscard]] std::vector<VeilNodes> media_samples(const Rig& rig,
                                                    std::span<const LampGrid> lamps,
                                                    const MediaSampling& sampling,

@@ -57,7 +57,7 @@ std::vector<std::string> wavelength_labels(std::span<const PlannedWavelength> wa
     return labels;
 }
 
-// From any lamp to what it may light.
+// The least distance from any lamp to a surface that it may light.
 double least_throw_m(const Rig& rig) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
@@ -74,7 +74,7 @@ double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     return power_of_two_within(kFadeShare * least_throw_m(rig));
 }
 
-// Of POV-Ray's pinhole for the camera: half a pixel, at a distance of 1.
+// Half a pixel, at a distance of 1, of POV-Ray's pinhole for the camera.
 double half_pixel_slope(const Camera& camera) {
     const Pinhole pinhole = pinhole_about(camera);
     return 0.5 * pinhole.sensor_width_m / camera.width_px / pinhole.focal_length_m;
@@ -87,7 +87,7 @@ double widest_off_normal_rad(const Camera& camera) {
     return std::atan(half_view) + std::acos(std::min(1.0, camera.port->normal.z()));
 }
 
-// The least distance between the surfaces around the pupil that POV-Ray has to find.
+// The least distance between the surfaces around the pupil that POV-Ray has to resolve.
 double least_clearance_m(const PortWindow& port) {
     const double room_m =
         port.dome ? port.dome->radius_m - port.dome->centre_m.norm() : port.distance_m;
@@ -155,7 +155,7 @@ struct PlacedLamp {
 
 // The least distance from a lamp with a shell to any other.
 double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
-    // Closer lamps may as well be one, and scenes cannot distinguish them.
+    // Closer lamps can count as one, and scenes cannot distinguish them.
     constexpr double kOnePlace_m = 1e-6;
     std::vector<PlacedLamp> lamps;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
@@ -182,8 +182,8 @@ double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
     return least_m;
 }
 
-// A shell, a thousandth of a unit in size, blocks other lamps' light from what lies behind it: at
-// most a millionth of their directions, and on a floor a spot that no pixel sees.
+// A shell, a thousandth of a unit in size, blocks other lamps' light behind it: at most a millionth
+// of their directions, and on a floor a spot smaller than any pixel resolves.
 double unit_with_shells_m(const Rig& rig, std::span<const LampGrid> lamps) {
     constexpr double kMost_m = 0x1p-7;
     const double unit_m = scene_unit_m(rig);
@@ -235,11 +235,11 @@ void require_place(const Rig& rig, std::span<const LampGrid> lamps) {
     }
 }
 
-// What a frame shows.
+// The contents of a frame.
 enum class Shown { Surfaces, Water };
 
-// By strobe of the rig. A user's scene may contain anything, and water is everywhere, so there all
-// strobes that shine are included.
+// By strobe of the rig. A user's scene may contain anything, and water is everywhere, so for these
+// all strobes with light are included.
 std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
                                             std::span<const LampGrid> lamps,
                                             const SceneOptions& options,
@@ -267,7 +267,7 @@ std::vector<NamedSpectrum> named_lamps_of(const Rig& rig) {
     return named(spectra);
 }
 
-// The floor's first; a user's scene uses the names that it gave them.
+// The floor's first; those of a user's scene have the scene's names.
 std::vector<NamedSpectrum> reflectances_of(const Rig& rig, const SceneOptions& options) {
     std::vector<Spectrum> own{rig.seafloor.reflectance};
     for (const Object& object : rig.objects) own.push_back(object.reflectance);
@@ -293,17 +293,17 @@ double brightest_colour(const Rig& rig, double lambda_nm, double fade_m) {
     return brightest / (2.0 * std::numbers::pi * fade_m * fade_m);
 }
 
-// What all frames of a rig have in common.
+// The parts common to all frames of a rig.
 struct Parts {
     std::vector<NamedSpectrum> lamps;
     std::vector<NamedSpectrum> reflectances;
     std::string rig{};
     double fade_m;
-    double unit_m;  // of the scene; for a user's scene, that scene's word
-    bool has_rays;  // of the camera, in a file of their own
+    double unit_m;  // of the scene; a user's scene declares its own
+    bool has_rays;  // of the camera, in a separate file
 };
 
-// Relative to the veil's brightest: room for what the coarse grid of its bound missed, and for
+// Relative to the veil's brightest: room for peaks missed by the coarse grid of its bound, and for
 // strobes of a user's scene that are elsewhere.
 constexpr int kVeilTargetLog2 = 8;
 constexpr auto kFogFrame = "distance";
@@ -409,7 +409,7 @@ std::vector<PlannedWavelength> in_veil(Frame frame) {
     return wavelengths;
 }
 
-// Of one lobe; empty: without scattering.
+// The scattering of one lobe; empty: without scattering.
 BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> lobe, Frame frame) {
     BandScattering scattering{.eccentricity = 0.0,
                               .samples = veil.sampling.samples,
@@ -423,7 +423,7 @@ BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> 
     return scattering;
 }
 
-// Nothing shines, and a fog shows how far each pixel sees.
+// A scene without light, in which a fog shows the distance that each pixel sees.
 std::string fog_sdl(const Rig& rig,
                     const Parts& parts,
                     const PlannedWavelength& wavelength,
@@ -501,7 +501,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     require_place(rig, lamps);
     const Parts parts = parts_of(rig, lamps, options);
     const std::vector<std::string> labels = wavelength_labels(wavelengths);
-    // Below a half, whatever the bound's margin: a PNG ends at 1.
+    // Below a half, whatever the bound's margin, since a PNG's range ends at 1.
     constexpr int kPngPeakLog2 = -1;
     const int peak_log2 = options.format == FrameFormat::Exr ? options.peak_log2 : kPngPeakLog2;
     std::vector<FrameScene> scenes;
@@ -561,14 +561,14 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
 
 namespace {
 
-// For a user's scene that is not planned yet: everything white.
+// For a user's scene before planning, with everything white.
 std::string unplanned_sdl(const Rig& rig,
                           const std::string& scene_name,
                           bool has_rays,
                           const std::function<void(Band&)>& set_light) {
     SceneOptions options;
     options.user_scene = std::make_shared<UserScene>();
-    // For paths known to a hundredth.
+    // Sufficient for paths accurate to a hundredth.
     options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
@@ -588,7 +588,7 @@ std::string probe_sdl(const Rig& rig, const std::string& scene_name, const Probe
     if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }
-    // A pinhole with the same view gives all that is needed.
+    // A pinhole with the same view is sufficient.
     return sdl + unplanned_sdl(rig, scene_name, false, [&](Band& band) {
                for (std::size_t c = 0; c < band.exposure.size(); ++c) {
                    band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
@@ -610,8 +610,8 @@ std::string distance_sdl(const Rig& rig,
 
 namespace {
 
-// Always the same number of rays: POV-Ray's threshold compares the three wavelengths together, and
-// none may change because of another.
+// The number of rays is constant, since POV-Ray's threshold compares the three wavelengths
+// together, and none may depend on another.
 std::string antialias_ini(int rays) {
     if (rays == 0) return "; One ray through each pixel's centre.\nAntialias=off\n";
     return fmt::format(

@@ -43,7 +43,7 @@ double longest_in_water_m(const Rig& rig) {
 }
 
 double shortest_path_m(const Rig& rig, std::span<const LampGrid> lamps) {
-    constexpr double kRoom = 0.98;  // for what lies between the grid's pixels
+    constexpr double kRoom = 0.98;  // for light between the grid's pixels
     double shortest_m = std::numeric_limits<double>::infinity();
     over_the_image(rig, [&](double column, double row) {
         const WaterRay ray = pixel_ray(rig, column, row, middle_nm(rig));
@@ -55,7 +55,7 @@ double shortest_path_m(const Rig& rig, std::span<const LampGrid> lamps) {
     return kRoom * shortest_m;
 }
 
-// The angles by which the light in the image is turned.
+// The scattering angles of the light in the image.
 struct Angles {
     double from_rad;
     double to_rad;
@@ -115,7 +115,7 @@ std::vector<double> scattering_by_lobe(const Rig& rig, const PhaseLobes& lobes, 
 
 struct Sampled {
     double sum = 0.0;
-    double parts = 0.0;  // the same, did no lobe cancel another
+    double parts = 0.0;  // the same, if no lobe cancelled another
 };
 
 Sampled sampled_radiance(const Rig& rig,
@@ -138,7 +138,7 @@ Sampled sampled_radiance(const Rig& rig,
     return sampled;
 }
 
-// Notes how bright the veil is as well.
+// Also records the brightness of the veil.
 double measured_error(const Rig& rig,
                       const PovrayVeil& povray,
                       const PovrayVeilRequest& request,
@@ -184,8 +184,8 @@ double measured_error(const Rig& rig,
     return worst;
 }
 
-// Near enough for the samples to serve what is near. If the cut might lie in glass, beyond all that
-// is lit.
+// Short enough for the samples to resolve nearby light. If the cut might be in glass, it is beyond
+// all lit water.
 double first_piece_m(const Rig& rig,
                      const LightFamily& direct,
                      const LightFamily& of_veil,

@@ -13,9 +13,9 @@
 // b_i were a floor's reflectance, on paths from lamp to water to camera.
 //
 // The known part of its error, in water over the bare floor, is measured on a coarse grid of the
-// image against light/veil.h: the lobes, the samples (scene_gen/media_samples.h), and how far
-// cancelling lobes amplify the half floats' rounding. Light turned by less than kVeilCut is not cut
-// off, and counts in the measured error. It is not a bound.
+// image against light/veil.h: the lobes, the samples (scene_gen/media_samples.h), and the
+// amplification of the half floats' rounding by cancelling lobes. Light deflected by less than
+// kVeilCut is not cut off, and counts in the measured error. The error is not a bound.
 #pragma once
 
 #include "rig/geometry.h"
@@ -30,7 +30,7 @@
 
 namespace aphotic {
 
-// Of smooth light off by 5e-4 where HabCam sees it, of cones by a tenth of that.
+// The error for HabCam is 5e-4 for smooth light, and a tenth of that for cones.
 inline constexpr int kVeilSamples = 50;
 
 struct PovrayVeil {
@@ -42,8 +42,8 @@ struct PovrayVeil {
 struct PovrayVeilRequest {
     int samples = kVeilSamples;
     std::span<const LampGrid> lamps;
-    bool is_user_scene = false;  // whose strobes may be anywhere
-    bool fits_weights = true;    // false: the wavelengths' own
+    bool is_user_scene = false;  // with strobes at any place
+    bool fits_weights = true;    // false: the wavelengths' own weights
     double frame_error = 0.0;
 };
 

@@ -16,7 +16,7 @@ namespace aphotic {
 
 namespace {
 
-// In the middle of the three: one index serves all of them.
+// The middle of the three, whose index serves all of them.
 constexpr double kIndex_nm = kQuickLambda_nm[1];
 
 std::vector<NamedSpectrum> all_of(CurveRole role, std::vector<Spectrum> own) {
@@ -32,14 +32,14 @@ std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
     return all_of(CurveRole::LampSpectrum, std::move(own));
 }
 
-// As a scene in the rig's folder names it.
+// The name as used by a scene in the rig's folder.
 std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& material) {
     const std::optional<CurveSource>& source = material.spectrum.source();
     if (!source || !source->is_file()) return material.name;
     // Relative to the folder: the path to the folder is irrelevant to the scene.
     const std::string here =
         std::filesystem::path(source->table).lexically_proximate(folder).generic_string();
-    // A scene cannot use a name that POV-Ray cannot hold: any unique one will do.
+    // A scene cannot use a name that POV-Ray cannot represent, so any unique one will do.
     return scene_name(here) == here ? here : material.name;
 }
 

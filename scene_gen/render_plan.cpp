@@ -21,7 +21,8 @@ namespace aphotic {
 
 namespace {
 
-// Relative to the error of veil and frames, whatever the wavelengths: the least to try.
+// The least tolerance to try, relative to the error of veil and frames, which does not depend on
+// the wavelengths.
 constexpr double kVeilsNext = 1.1;
 
 std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
@@ -30,7 +31,7 @@ std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
     return lambda_nm;
 }
 
-// What the frames show.
+// The rig as shown in the frames.
 Rig lit_rig(const Rig& rig, const SceneOptions& options) {
     return options.user_scene ? rig_of_scene(rig, *options.user_scene) : rig;
 }
@@ -47,12 +48,13 @@ LightFamily family_of(const Rig& rig, const PlanRequest& request) {
     return family;
 }
 
-// Behind a port frames are counted, not wavelengths: three that cannot share a frame cost three.
+// Behind a port, frames are counted instead of wavelengths: three wavelengths that cannot share a
+// frame cost three frames.
 int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
     return rig.camera.port ? 1 : scene.wavelengths_per_frame;
 }
 
-// A shift's effect on an object has no bound.
+// The effect of a shift on an object has no bound.
 double pixel_shift(const Rig& rig, const SceneOptions& scene) {
     return rig.objects.empty() && !scene.user_scene ? scene.pixel_shift : 0.0;
 }
@@ -88,9 +90,9 @@ void share_frames(const Rig& rig,
     }
 }
 
-// The fewest wavelengths that achieve the tolerance, also by the certificate: if only the fit finds
-// them good enough, the fit is asked for more. If sharing frames behind a port breaks the
-// tolerance, none is shared. The result is what the plan promises: over the tolerance if no such
+// The fewest wavelengths that achieve the tolerance, also by the certificate: if they satisfy only
+// the fit, it is repeated for a smaller tolerance. If sharing frames behind a port exceeds the
+// tolerance, no frame is shared. The result is the plan's promise, above the tolerance if no such
 // plan is found.
 double best_promise(double tolerance,
                     const Rig& rig,
@@ -111,7 +113,7 @@ double best_promise(double tolerance,
     for (int trial = 0; trial < kMostTrials; ++trial) {
         const FittedRule rule = plan_wavelengths(fitter, rig.camera.range, target);
         const double fitted = rule.promise(plan.frame_error);
-        // If the fit already finds it too bad there is no plan, whatever it promises.
+        // If the fit's own error is too large, there is no plan, whatever its promise.
         if (fitted > target.tolerance) return trial == 0 ? fitted + plan.veil_error : promise;
         const std::vector<double> lambda_nm = wavelengths_of(rule.wavelengths);
         plan.scene.pixel_shift = pixel_shift(rig, request.scene);
@@ -158,8 +160,8 @@ void plan_to_tolerance(const Rig& rig,
         least);
 }
 
-// A misplaced decimal point in the focal length is the likelier cause of paths that no plan serves:
-// no lens without distortion sees more than 135 degrees.
+// Paths that no plan serves are most likely caused by a misplaced decimal point in the focal
+// length: no lens without distortion sees more than 135 degrees.
 [[noreturn]] void refuse(const Rig& rig, const std::string& why) {
     constexpr double kMostView_rad = 150.0 * kRadiansPerDegree;
     constexpr double kMillimetresPerMetre = 1e3;
@@ -302,7 +304,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     if (!rig.water.scatters() || !request.scene.veil_samples) return plan;
     const int samples = *request.scene.veil_samples;
     add_povray_veil(rig, samples, plan);
-    // As many more wavelengths as the veil needs, whose paths vary more.
+    // The most additional wavelengths for the veil, whose paths vary more.
     constexpr int kMostMore = 9;
     const int fewest = static_cast<int>(plan.wavelengths.size());
     const int step = wavelengths_per_step(rig, request.scene);

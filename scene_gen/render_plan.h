@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The plan of a render: its wavelengths, weights and frames, what is omitted, and the error that
-// all of this promises.
+// The plan of a render: its wavelengths, weights and frames, the omitted parts, and the promised
+// error.
 //
 // The promise of a channel is
 //
@@ -29,15 +29,15 @@
 
 namespace aphotic {
 
-// The lamps of an emitter err by 1e-4 (geometry.h), the reference's by a fifth of it.
+// The lamps of an emitter err by 1e-4 (geometry.h), the reference's by a fifth of that.
 inline constexpr double kLampError = 1.2e-4;
 
 struct PlanRequest {
     double tolerance = 1e-3;             // the fewest fitted wavelengths that achieve it
-    std::optional<int> fitted;           // or so many, whatever their error
+    std::optional<int> fitted;           // or this number, whatever their error
     std::optional<int> bands;            // or equal bands
     std::vector<double> wavelengths_nm;  // or these, with fitted weights
-    std::optional<PathRange> paths;      // instead of those that the rig's own camera sees
+    std::optional<PathRange> paths;      // instead of those of the rig's own camera
     SceneOptions scene;
 };
 
@@ -46,15 +46,15 @@ enum class PlanMethod { Fitted, EqualBands, Listed };
 
 struct RenderPlan {
     PlanMethod method = PlanMethod::Fitted;
-    double tolerance = 0.0;  // 0: none was asked for
+    double tolerance = 0.0;  // 0: none was requested
     LightFamily family;
     std::vector<PlannedWavelength> wavelengths{};  // increasing; not exposed yet
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
-    double veil_error = 0.0;  // of what is added for water that scatters; part of quality's
+    double veil_error = 0.0;  // of the veil of scattering water; part of quality's
     SceneOptions scene;       // including the veil that POV-Ray renders, if requested
     std::vector<Omission> omissions;
-    std::vector<std::string> no_promise{};  // why the scene has no promise; empty: it has one
+    std::vector<std::string> no_promise{};  // reasons against a promise; empty: it has one
 
     [[nodiscard]] std::size_t frames() const {
         return wavelengths.empty() ? 0 : wavelengths.back().frame + 1;
@@ -66,11 +66,11 @@ struct RenderPlan {
 [[nodiscard]] double frame_error(const Rig& rig);
 
 // Throws InputError if the tolerance cannot be achieved, or wavelengths are out of order or range.
-// If sharing frames behind a port would break the tolerance, each wavelength has its own.
+// If sharing frames behind a port would exceed the tolerance, each wavelength has its own.
 [[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
 
-// The wavelengths, which are increasing, in frames, with the light of the rig or of its user's
-// scene; not weighted yet.
+// Distributes increasing wavelengths over frames, with the light of the rig or of its user's scene,
+// without weights yet.
 [[nodiscard]] std::vector<PlannedWavelength> in_frames(const Rig& rig,
                                                        std::span<const double> lambda_nm,
                                                        const SceneOptions& options);

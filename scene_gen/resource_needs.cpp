@@ -15,17 +15,17 @@ namespace {
 constexpr std::uint64_t kFloat_bytes = sizeof(float);
 constexpr std::uint64_t kHalf_bytes = 2;
 
-constexpr std::uint64_t kHeader_bytes = 4096;       // of an image; and what a short log holds
+constexpr std::uint64_t kHeader_bytes = 4096;       // of an image; or the size of a short log
 constexpr std::uint64_t kChannelHeader_bytes = 64;  // its name and type
-constexpr std::uint64_t kBlockHeader_bytes = 16;    // OpenEXR notes where it is and how long
+constexpr std::uint64_t kBlockHeader_bytes = 16;    // OpenEXR's record of its place and length
 constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray reports progress every 0.1 s
 constexpr std::uint64_t kPovrayPixel_bytes = 20;    // five floats
 constexpr std::uint64_t kPovrayState_bytes = 21;  // these, and a header for each square of 32 x 32
-constexpr std::uint64_t kPovrayBuffer_bytes = 129ULL << 20U;  // from there on an image goes to /tmp
+constexpr std::uint64_t kPovrayBuffer_bytes = 129ULL << 20U;  // larger images go to /tmp
 
 constexpr std::uint64_t kPovray_bytes = 24'000'000;
-constexpr std::uint64_t kParsed = 6;             // times its text
-constexpr std::uint64_t kPovrayFrame_bytes = 8;  // a pixel, as it writes the frame
+constexpr std::uint64_t kParsed = 6;             // times the size of the text
+constexpr std::uint64_t kPovrayFrame_bytes = 8;  // per pixel, while it writes the frame
 constexpr std::uint64_t kIntegratedPixel_bytes = 25;
 constexpr std::uint64_t kIntegrate_bytes = 192'000'000;  // two blocks of rows (image/row_blocks.h)
 
@@ -87,7 +87,7 @@ ResourceNeeds images_needs(const ImageSize& size) {
     return {.folder_bytes = images_bytes(largest_files(size))};
 }
 
-// One setting at a time, whose folder is removed before the next; the reference stays.
+// One setting at a time, whose folder is removed before the next; the reference is kept.
 ResourceNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs) {
     ResourceNeeds needs =
         render_needs({.size = size, .frames = frames, .scenes_bytes = 0, .jobs = jobs});

@@ -79,7 +79,8 @@ Rig with_lit_strobes_only(Rig rig) {
     return rig;
 }
 
-// Behind a port the frames' wavelengths count too, which another sensor need not see.
+// Behind a port the range includes the frames' wavelengths, even if another sensor does not cover
+// them.
 Rig covering_frames(Rig rig, const Manifest& manifest) {
     if (!rig.camera.port) return rig;
     for (const PlannedWavelength& w : manifest.wavelengths) {
@@ -89,7 +90,7 @@ Rig covering_frames(Rig rig, const Manifest& manifest) {
     return rig;
 }
 
-// The fewest further wavelengths with which the tolerance would be achieved, for the message.
+// The fewest additional wavelengths that would achieve the tolerance, for the message.
 std::string lacking(const QuadratureFitter& fitter,
                     const Rig& changed,
                     const std::vector<FrameLight>& frames,
@@ -143,7 +144,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
             tolerance,
             lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }
-    now.veil.reset();  // the frames' own rig's
+    now.veil.reset();  // belongs to the frames' own rig
     now.model.reset();
     for (PlannedWavelength& w : now.wavelengths) w.veil.reset();
     now.rig_title = changed.title;

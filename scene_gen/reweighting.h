@@ -7,7 +7,7 @@
 //
 // A frame holds Phi_s rho exp(-K l) of its own rig, recorded in its manifest for each wavelength,
 // strobe and material; over the paths that the geometry allows, sums of such exponentials span
-// others. How well is determined as for any plan (spectral/quadrature_fit.h), and promised.
+// others. The error is determined and promised as for any plan (spectral/quadrature_fit.h).
 #pragma once
 
 #include "scene_gen/render_plan.h"
@@ -15,11 +15,11 @@
 
 namespace aphotic {
 
-// For frames of a user's scene `changed` is what rig_of_scene makes of the changed rig.
+// For frames of a user's scene, `changed` is rig_of_scene() of the changed rig.
 //
-// The manifest with the weights, promises and names of the changed rig. Throws InputError when the
-// geometry differs, naming what; and when the promise is over the tolerance, naming the
-// wavelengths whose frames are lacking.
+// The manifest with the weights, promises and names of the changed rig. Throws InputError if the
+// geometry differs, with the difference, and if the promise exceeds the tolerance, with the
+// wavelengths whose frames are missing.
 [[nodiscard]] Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance);
 
 }  // namespace aphotic

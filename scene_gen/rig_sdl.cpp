@@ -71,7 +71,7 @@ std::vector<Beam> called_beams(const std::vector<StrobeInScene>& strobes, SceneA
     return beams;
 }
 
-// Where they are in that order.
+// The name by the place in that order.
 std::string pattern_name(std::size_t index) {
     return fmt::format("Aphotic_Rig_Pattern_{}", index + 1);
 }
@@ -137,7 +137,7 @@ std::string seafloor_sdl(const Rig& rig, std::span<const NamedSpectrum> reflecta
         sdl_text(name_of(floor.reflectance, reflectances)));
 }
 
-// What goes between an object's braces, before its texture.
+// The text between an object's braces, before its texture.
 struct ShapeText {
     std::string operator()(const Sphere& sphere) const {
         return fmt::format(

@@ -7,7 +7,7 @@
 //   Aphotic_Rig ()           both, and the water
 //   Aphotic_Rig_Seafloor ()  its floor
 //   Aphotic_Rig_Objects ()   its objects
-//   Aphotic_Rig_Beam (I)     its beams, as Aphotic_Beam_Names has them: see SceneAuthor
+//   Aphotic_Rig_Beam (I)     its beams, in the order of Aphotic_Beam_Names: see SceneAuthor
 //
 // in the sled's frame, in the scene's unit.
 #pragma once
@@ -22,9 +22,9 @@
 
 namespace aphotic {
 
-// One strobe as the scene needs it.
+// One strobe in the scene.
 struct StrobeInScene {
-    Beam beam;       // which of its light is in view, if any
+    Beam beam;       // the part of its light in view, if any
     LampGrid lamps;  // of its emitter
 };
 

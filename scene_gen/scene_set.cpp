@@ -25,7 +25,7 @@ namespace aphotic {
 void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
                                double frame_error,
                                FrameFormat format) {
-    // With this level, a pixel 64 times darker still has all of its digits, in a PNG one 4 times
+    // At this level, a pixel 64 times darker still has full precision; in a PNG, one 4 times
     // darker.
     const double well_log2 = format == FrameFormat::Exr ? -8.0 : -4.0;
     const int held = held_log2(format);
@@ -88,7 +88,7 @@ ManifestScene noted(const UserScene& scene, const LightFamily& family) {
     return note;
 }
 
-// All that the scenes include.
+// All texts that the scenes include.
 std::string include_text() {
     std::string text;
     for (const IncludeFile& file : include_library()) text += file.text;
@@ -148,7 +148,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (const FrameScene& scene : set.scenes) {
-        // Settings and includes change pixels as much as the scene does: the checksum covers all.
+        // Settings and includes affect pixels as the scene does, so the checksum covers them all.
         manifest.frames.push_back({.name = scene.name,
                                    .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
@@ -159,7 +159,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
 namespace {
 
-// POV-Ray reads what follows a '[' in the name of its settings file as a section.
+// POV-Ray reads the text after a '[' in the name of its settings file as a section.
 void require_no_bracket(const std::filesystem::path& folder) {
     if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
     throw InputError(
@@ -178,14 +178,14 @@ void require_place_in_settings(const std::string& path) {
         path);
 }
 
-// As named by the settings there, seen from the user's scene's folder.
+// The path as named in the settings, relative to the user's scene's folder.
 std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
     // Absolute, for a folder that does not exist yet.
     const std::filesystem::path here = std::filesystem::absolute(povray);
     return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
 }
 
-// In the user's scene's folder, where its own includes and pictures are found.
+// POV-Ray runs in the user's scene's folder, which contains its own includes and pictures.
 std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
     if (set.scene_file.empty()) return set.ini + "Output_File_Name=frames/\n";
     const std::string here = path_from_scene(povray, set);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Everything for a render of a rig before POV-Ray runs: the scenes and the manifest, which
-// describes how their frames become images. Written to a folder DIR:
+// Everything for a render of a rig before POV-Ray runs: the scenes, and the manifest, which
+// determines the images from their frames. Written to a folder DIR:
 //
 //   DIR/manifest.json
 //   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/*.inc, DIR/povray/frames/
@@ -23,30 +23,30 @@ namespace aphotic {
 struct SceneSet {
     std::vector<FrameScene> scenes;   // in the order of manifest.frames
     Manifest manifest;                // nothing rendered yet
-    std::string ini;                  // without the paths, which change no pixel
+    std::string ini;                  // without paths, which affect no pixel
     std::optional<Camera> camera{};   // with a lens, whose rays are written; empty: a pinhole
-    std::vector<float> vignetting{};  // by pixel; empty: none
+    std::vector<float> vignetting{};  // by pixel; empty without vignetting
     // The rig whose veil is written next to the frames; null: none, or POV-Ray renders it.
     std::optional<Rig> scattering{};
     std::filesystem::path scene_file{};  // the user's, absolute; empty: the rig's floor
-    std::string scene_files_digest{};    // the user's, as it was planned for
-    bool scene_writes_files = false;     // the user's own
+    std::string scene_files_digest{};    // of the user's scene as planned
+    bool scene_writes_files = false;     // the user's scene
 };
 
-// Throws InputError if a wavelength matters whose light is fainter than frames can hold.
+// Throws InputError if a wavelength counts whose light is fainter than frames can represent.
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
 
-// Light that is fainter than frames hold. POV-Ray's colours are floats, which bounds exposures, and
-// what a frame holds of L(lambda_j) in view is at most
+// Light fainter than frames can represent. POV-Ray's colours are floats, which bounds exposures,
+// and the sample of L(lambda_j) in a frame is at most
 //
 //   2^e_j B_j        B_j  the bound of L(lambda_j)       e_j  the exposure
 //
-// Below 2^-14 half floats lose digits. Where all light is so faint the image is black, as it should
-// be. Where a weight w_cj makes such a wavelength count, |w_cj| B_j against the largest of the
-// channel's, beside others that are held, what is lost has no bound.
+// Below 2^-14 half floats lose digits. If all light is so faint, the image is black, as it should
+// be. If such a wavelength counts beside others that are represented, by |w_cj| B_j relative to the
+// channel's largest, the loss has no bound.
 //
-// Throws InputError where a wavelength counts whose light is not held. What is less than
-// frame_error of the largest does not count. Of PNG frames the same, from 2^-6.
+// Throws InputError if a wavelength counts whose light is not represented. Wavelengths below
+// frame_error of the largest do not count. The same holds for PNG frames, below 2^-6.
 void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
                                double frame_error,
                                FrameFormat format = FrameFormat::Exr);

@@ -123,7 +123,7 @@ bool is_language(const fs::path& file) {
     return std::ranges::find(kLanguage, file.extension().string()) != kLanguage.end();
 }
 
-// The scene, and the existing files that it or a file so found names.
+// The scene, and the existing files that it, or a file found this way, names.
 std::set<fs::path> files_of(const fs::path& scene_file) {
     std::set<fs::path> seen;
     std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
@@ -145,7 +145,7 @@ std::set<fs::path> files_of(const fs::path& scene_file) {
 
 std::string digest_of_scene(const fs::path& scene_file) {
     const fs::path folder = fs::absolute(scene_file).lexically_normal().parent_path();
-    std::map<std::string, std::string> digests;  // in an order that does not depend on the listing
+    std::map<std::string, std::string> digests;  // in an order independent of the listing
     for (const fs::path& file : files_of(scene_file)) {
         digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
     }

@@ -24,13 +24,13 @@ constexpr int kBlockRows = 2 * kVeilTile_px;
 // Deflate takes longer than everything else, for a third of the size.
 constexpr int kNotCompressed = 0;
 
-// Planes that have the same rays.
+// Planes with the same rays.
 struct Planes {
     VeilMap veil;
     CameraRays rays;
 };
 
-// R, G, B and then the wavelengths, in the manifest's order: as many as a group may hold, but
+// R, G, B and then the wavelengths, in the manifest's order: as many as fit into a group, but
 // behind a port each wavelength separately, since it has its own ray.
 std::vector<Planes> planes_of(const Rig& rig,
                               const Manifest& manifest,
@@ -97,7 +97,7 @@ void paint_block(const std::vector<Planes>& planes,
     }
 }
 
-// How far each pixel sees, from the frame of fog; infinite if only fog is there.
+// The distance that each pixel sees, from the frame of fog; infinite if it sees only fog.
 std::vector<double> distances(const std::filesystem::path& folder,
                               const Manifest& manifest,
                               Rows rows) {
@@ -113,7 +113,7 @@ std::vector<double> distances(const std::filesystem::path& folder,
     return distance_m;
 }
 
-// Over anything, pixel by pixel. Where the floor is in view, its distance is used, since the fog's
+// Over any scene, pixel by pixel. Where the floor is in view, its distance is used, since the fog's
 // half floats are coarser.
 std::vector<float> block_of_pixels(const std::vector<Planes>& planes,
                                    const Rig& rig,
