@@ -4,18 +4,18 @@
 //
 //   e_i = (a_i - b_i) / max(|b_i|, floor)
 //
-// a      the image in question        b  the reference
-// floor  what counts as black: under it a difference is measured against it, so that a
-//        rounding of nothing is not an infinite error
+// a      the image under test         b  the reference
+// floor  the level of black: below it, differences are relative to the floor, so that a
+//        rounding error of black is not an infinite error
 //
-// Reported for |e|: the largest and its place, the 99.9 percentile (nearest rank), the root mean
-// square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
+// Reported are, for |e|, the largest and its place, the 99.9 percentile (nearest rank) and the root
+// mean square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
 //
 // Samples on edges, where rounding decides on which side a pixel's centre falls, are counted and
-// measured separately. For those in penumbrae (validation.h) the number is reported, and how far a
-// is from the emitters themselves, which no bound covers. A comparison holds if the largest |e| off
-// the edges is within the bound, every sample, on edges too, is finite, and there is at least one
-// off the edges. Samples never observed, as in an average of images, are only counted.
+// measured separately. For those in penumbrae (validation.h), the number is reported, and the
+// difference of a from the emitters themselves, which no bound covers. A comparison holds if the
+// largest |e| off the edges is within the bound, all samples are finite, on edges too, and at least
+// one is off the edges. Samples never observed, as in an average of images, are only counted.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -43,14 +43,14 @@ struct Comparison {
     std::size_t not_finite = 0;  // samples of a or b that are NaN or inf, edges included
     double bound = 0.0;
     double floor = 0.0;
-    std::size_t under_floor = 0;  // samples compared of which |b| is under it
+    std::size_t under_floor = 0;  // samples compared whose |b| is below the floor
 
     [[nodiscard]] bool holds() const {
         return compared > 0 && not_finite == 0 && max_error <= bound;
     }
 };
 
-// The mark of a sample that is not compared like the others.
+// The mark of a sample that is compared separately.
 inline constexpr unsigned char kOnEdge = 1;
 inline constexpr unsigned char kUnobserved = 2;
 

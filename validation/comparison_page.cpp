@@ -20,7 +20,7 @@
 namespace aphotic {
 namespace {
 
-// A channel by blocks; NaN where nothing was observed.
+// A channel by blocks; NaN where no sample was observed.
 struct Blocks {
     int side = 1;
     int across = 0;
@@ -29,8 +29,8 @@ struct Blocks {
     std::vector<double> reference;
 };
 
-// For pictures of half a page's width. Two pixels or more if some were not observed: a block of a
-// mosaic holds every colour.
+// For pictures of half a page's width. Two pixels or more if some were not observed, so that a
+// block of a mosaic contains every colour.
 int side_of(const ComparedImages& images) {
     const bool is_whole = std::ranges::all_of(images.channels, [](const ComparedChannel& channel) {
         return channel.comparison.unobserved == 0;

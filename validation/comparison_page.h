@@ -20,7 +20,7 @@ namespace aphotic {
 
 struct ComparedChannel {
     Comparison comparison;
-    double scale = 1.0;        // the image was divided by it
+    double scale = 1.0;        // by which the image was divided
     double black = 0.0;        // the floor of compare_planes()
     std::vector<float> image;  // rows of width_px samples
     std::vector<float> reference;
@@ -35,7 +35,8 @@ struct ComparedImages {
     double black = 0.0;  // as a share of the reference's largest sample
     bool scaled = false;
     std::vector<ComparedChannel> channels;
-    // In either image, and not compared: without a partner, which fails, or needing none.
+    // Channels of either image that were not compared: without a partner, which is a failure, or
+    // those that need none.
     std::vector<std::string> only_in_image{};
     std::vector<std::string> only_in_reference{};
     std::vector<std::string> left_aside{};
@@ -43,7 +44,7 @@ struct ComparedImages {
     [[nodiscard]] std::size_t unpaired() const {
         return only_in_image.size() + only_in_reference.size();
     }
-    // Everything that was compared is within its bound.
+    // Every comparison is within its bound.
     [[nodiscard]] bool are_within() const {
         return std::ranges::all_of(
             channels, [](const ComparedChannel& channel) { return channel.comparison.holds(); });
@@ -54,8 +55,8 @@ struct ComparedImages {
 // A self-contained file, well-formed as HTML and as XML.
 [[nodiscard]] std::string comparison_html(const ComparedImages& images);
 
-// False colour of a share of the scale, 0 to 1, dark blue over green to yellow: 0xRRGGBB. It gets
-// lighter all the way, so it can be read without its colours.
+// False colour of a share of the scale, 0 to 1, from dark blue over green to yellow: 0xRRGGBB. Its
+// lightness increases throughout, so it can be read without colours.
 [[nodiscard]] std::uint32_t false_colour(double share);
 
 }  // namespace aphotic

@@ -15,7 +15,7 @@
 namespace aphotic {
 namespace {
 
-// Mostly equal images have no scale of their own.
+// Images that are mostly equal determine no scale.
 double map_scale(const Comparison& comparison) {
     for (const double end : {comparison.percentile_999, comparison.bound, comparison.max_error}) {
         if (end > 0.0 && std::isfinite(end)) return round_up(end);
@@ -81,7 +81,7 @@ SvgAxis value_axis(const Profile& profile) {
     return linear_axis(range.least, range.most + 0.07 * (range.most - range.least), 5);
 }
 
-// Shows the bound too if it is not far from the errors.
+// Includes the bound if it is not far from the errors.
 SvgAxis error_axis(std::span<const Profile> profiles) {
     constexpr double kNear = 4.0;
     ValueRange errors{.least = 0.0, .most = 0.0};
@@ -96,7 +96,7 @@ SvgAxis error_axis(std::span<const Profile> profiles) {
     return linear_axis(-end, end, 4);
 }
 
-// A channel's own; other channels are drawn in ink.
+// R, G and B have their own colours; other channels are drawn in ink.
 std::string tone_of(const std::string& channel) {
     const auto found = std::ranges::find(kChannelNames, channel);
     if (found == kChannelNames.end()) return "";

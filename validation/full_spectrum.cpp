@@ -37,7 +37,8 @@ std::vector<GaussPoint> gauss_rule() {
     return rule;
 }
 
-// From none, which is enough where all light is spent; the last is the standard for the others.
+// From no point, sufficient where no light is left, to ten; the last rule is the standard for the
+// others.
 const std::array<std::vector<GaussPoint>, 8>& gauss_rules() {
     static const std::array<std::vector<GaussPoint>, 8> kRules{std::vector<GaussPoint>{},
                                                                gauss_rule<1>(),
@@ -55,7 +56,7 @@ ArrayXd paths_between(double shortest_m, double longest_m) {
     return ArrayXd::LinSpaced(kPaths, std::log(shortest_m), std::log(longest_m)).exp();
 }
 
-// Lights of the same paths.
+// Lights with the same paths.
 struct Group {
     const std::vector<std::vector<Spectrum>>* sources;
     ArrayXd paths_m;

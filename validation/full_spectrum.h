@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The wavelengths at which the reference computes its integrals over the spectrum. The plan has its
-// own grid (spectral/light_family.h), and neither knows the other's.
+// own grid (spectral/light_family.h), independent of this one.
 //
 //   S_c = int L Q_c dlambda ~ sum_j w_cj L(lambda_j)
 //
@@ -23,14 +23,14 @@ namespace aphotic {
 
 inline constexpr int kPaths = 7;
 
-// The veil's light: b_i in place of a reflectance, with its own paths. None: no sources.
+// The veil's light: b_i in place of a reflectance, with its own paths. Empty without sources.
 struct VeilLights {
     std::vector<std::vector<Spectrum>> sources{};
     double shortest_path_m = 0.0;
     double longest_path_m = 0.0;
 };
 
-// For a family without a tilt.
+// The family must have no tilt.
 [[nodiscard]] std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
                                                             const LightFamily& lights,
                                                             WavelengthRange range,

@@ -21,7 +21,7 @@ namespace {
 // Pairs of channels.
 
 struct ChannelPair {
-    std::string image;  // its name there
+    std::string image;  // name in the image
     std::string reference;
 };
 
@@ -40,13 +40,14 @@ bool is_about_samples(const std::string& name) {
     return name.starts_with("count.") || name.starts_with("stderr.");
 }
 
-// Also of a layer, such as beauty.A.
+// Whether a channel is opacity, also of a layer, such as beauty.A.
 bool is_opacity(const std::string& name) {
     const std::string last = name.substr(name.rfind('.') + 1);
     return last == "A" || last == "alpha" || last == "Alpha";
 }
 
-// The free channel of the same quantity and wavelength, which is then taken. "" for none.
+// The free channel of the same quantity and wavelength, which is then no longer free. "" if there
+// is none.
 std::string taken_partner(const std::string& name, std::vector<std::string>& free) {
     const auto found = std::ranges::find_if(
         free, [&](const std::string& other) { return is_same_spectral_channel(name, other); });
@@ -61,7 +62,7 @@ ChannelPairs pair_channels(const std::vector<std::string>& image,
                            const std::vector<std::string>& reference,
                            bool scaled) {
     ChannelPairs pairs;
-    std::vector<std::string> free = reference;  // those that have no partner yet
+    std::vector<std::string> free = reference;  // those without a partner so far
     std::vector<std::string> partners;          // of the image's channels; "" for none
     for (const std::string& name : image) {
         partners.push_back(is_in(reference, name) ? name : "");
@@ -89,8 +90,8 @@ ChannelPairs pair_channels(const std::vector<std::string>& image,
 }
 
 // The channels that the user names, by either image's names, separated by commas. A name may
-// contain commas, such as S0.550,000000nm. Throws InputError if one is not in both images, or none
-// is named.
+// contain commas, such as S0.550,000000nm. Throws InputError if one is missing in either image, or
+// none is named.
 ChannelPairs named_channels(const std::string& names,
                             const std::vector<std::string>& image,
                             const std::vector<std::string>& reference) {
@@ -155,7 +156,7 @@ std::vector<unsigned char> unobserved_in(const AnyImage& a,
     return marks;
 }
 
-// For every channel, the same or each its own.
+// The scale of every channel: one for all, or one for each.
 std::vector<double> scales_of(const AnyImage& a,
                               const AnyImage& b,
                               const std::vector<ChannelPair>& channels,

@@ -4,16 +4,15 @@
 //
 //   e = (a / scale - b) / max(|b|, black * largest |b|)
 //
-// a, b   samples of image and reference, of channels that are one quantity
-// scale  1, or what fits the image to the reference best (scaling.h)
+// a, b   samples of image and reference, of channels of the same quantity
+// scale  1, or the factor that fits the image to the reference best (scaling.h)
 //
 // Samples that either image records as never observed (count.NAME of 0) are not compared.
 //
-// Which channels of two images are compared, and what happens to the others: none is skipped
-// silently. Partners have the same name, or the same quantity and wavelength in any spelling
-// (spectral/channel_wavelength.h). A channel that the other image lacks has no partner, unless it
-// is one that needs none: opacity (A, alpha), and counts and standard errors from `aphotic observe`
-// (count.NAME, stderr.NAME).
+// No channel is skipped silently. Channels with the same name are compared, and those with the same
+// quantity and wavelength in any spelling (spectral/channel_wavelength.h). Any other is reported as
+// having no partner, except those that need none: opacity (A, alpha), and counts and standard
+// errors from `aphotic observe` (count.NAME, stderr.NAME).
 #pragma once
 
 #include "validation/comparison_page.h"
@@ -31,9 +30,9 @@ struct ComparisonRequest {
     std::string reference;
     double bound = 6e-4;                  // of |e|
     double black = 1e-6;                  // as a share of the reference's largest sample
-    std::optional<std::string> channels;  // named by the user; otherwise all
+    std::optional<std::string> channels;  // named by the user; empty: all
     ComparedScale scale = ComparedScale::None;
-    bool keep_samples = false;  // for a page; otherwise one channel's are in memory at a time
+    bool keep_samples = false;  // for a page; otherwise only one channel is in memory
 };
 
 // Throws InputError for images that cannot be compared.

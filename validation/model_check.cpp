@@ -15,9 +15,9 @@
 namespace aphotic {
 namespace {
 
-constexpr std::uint64_t kSeed = 20111;  // any: the same for all, so that a rig's estimate is one
+constexpr std::uint64_t kSeed = 20111;  // arbitrary, but fixed, for reproducible estimates
 
-// Of a channel's light, over paths of twice the altitude.
+// The mean wavelength of a channel's light, over paths of twice the altitude.
 double mean_wavelength_nm(const Rig& rig, int channel) {
     const TracedWater water(rig.water);
     const WavelengthRange range = rig.camera.range;
@@ -54,7 +54,7 @@ struct Node {
     }
 };
 
-// Boost lists the half of its symmetric nodes that is not negative, the middle first.
+// Boost lists the non-negative half of its symmetric nodes, the middle first.
 template <int kNodes>
 std::array<Node, kNodes> gauss_nodes() {
     static_assert(kNodes % 2 == 1);

@@ -8,13 +8,13 @@
 //   error = (floor + veil) / truth - 1                              of one place
 //   rms   = sqrt(sum of g (|error| + tail / truth)^2 / sum of g)    of a channel: the estimate
 //
-// g     weight of the place, by Gauss and Legendre's rule across and down the image. The error
+// g     weight of the place, by Gauss-Legendre quadrature across and down the image. The error
 //       grows as the square of the distance from the middle, and the rule gives the mean of its
 //       square over the whole image, where even places gave 6 to 16 % less.
-// tail  light of more scatterings than a path is followed for, of the truth (monte_carlo.h)
+// tail  the truth's light of more scatterings than paths are followed for (monte_carlo.h)
 //
-// The truth's own noise is part of rms, so rms is no smaller than can be determined. It is an
-// estimate and not a bound, and never added to the promise, which covers the formulas.
+// The truth's own noise is part of rms, which is thus never below what can be resolved. It is an
+// estimate, not a bound, and is never added to the promise, which covers the formulas.
 //
 // For the bare floor: objects, highlights and vignetting are ignored.
 #pragma once
@@ -39,7 +39,7 @@ struct ModelPlace {
     double row = 0.0;
     std::size_t channel = 0;
     double lambda_nm = 0.0;
-    double floor = 0.0;  // the model's
+    double floor = 0.0;  // of the model
     double veil = 0.0;
     LightOfAllOrders truth;
     double weight = 1.0;  // g
@@ -49,13 +49,14 @@ struct ModelPlace {
 };
 
 struct ModelCheck {
-    std::size_t paths = 0;           // of each place
-    std::vector<ModelPlace> places;  // that see the floor's light or a veil; by channel
+    std::size_t paths = 0;           // per place
+    std::vector<ModelPlace> places;  // with floor light or veil in view; by channel
 
     [[nodiscard]] std::array<double, kChannels> rms() const;
 };
 
-// For water that scatters; without places for any other. Threads change no bit.
+// For water that scatters; without places for any other water. The result does not depend on
+// threads.
 [[nodiscard]] ModelCheck check_model(const Rig& rig,
                                      std::size_t paths,
                                      int threads,

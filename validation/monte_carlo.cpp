@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-// Paths whose importance has fallen to this share survive by chance (Russian roulette), with this
-// share of it.
+// Paths whose importance has fallen to this share survive at random (Russian roulette), with an
+// importance of this share.
 constexpr double kLeastShare = 0.1;
 
 // A unit vector at an angle from another.
@@ -28,7 +28,7 @@ Vector3d turned(const Vector3d& from, double angle_rad, double azimuth_rad) {
            std::sin(angle_rad) * (std::cos(azimuth_rad) * side + std::sin(azimuth_rad) * other);
 }
 
-// Statistics of a number that many paths each contribute.
+// Statistics of a quantity to which many paths contribute.
 struct Tally {
     double sum = 0.0;
     double squares = 0.0;
@@ -51,7 +51,7 @@ double down_cosine_height(const Rig& rig, const Vector3d& down, const Vector3d& 
 
 }  // namespace
 
-// Random numbers that are equal in every standard library, unlike its distributions.
+// Random numbers that are the same with every standard library, unlike its distributions.
 class MonteCarlo::Dice {
   public:
     Dice(std::uint64_t seed, std::uint64_t stream) {
@@ -61,21 +61,21 @@ class MonteCarlo::Dice {
                             static_cast<std::uint32_t>(stream >> 32U)};
         engine_.seed(words);
     }
-    // From 0 to 1, without 1.
+    // From 0 to below 1.
     double roll() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
 
   private:
     std::mt19937_64 engine_;
 };
 
-// One path, and what it has seen.
+// One path, and its light so far.
 struct MonteCarlo::Path {
     const MonteCarlo& light;
     Dice& dice;
     std::vector<Vector3d> lamps_m;  // drawn on the emitters
     double floor = 0.0;
     double veil = 0.0;
-    double late = 0.0;  // of both, by the second half of the turns
+    double late = 0.0;  // of both, from the second half of the turns
 
     struct Vertex {
         Vector3d place_m;
@@ -83,7 +83,7 @@ struct MonteCarlo::Path {
         bool is_floor;
         bool has_met_floor;
         double weight;
-        int turns;  // up to here
+        int turns;  // so far
     };
 
     void see(const Vertex& at, double radiance) {
@@ -91,7 +91,7 @@ struct MonteCarlo::Path {
         if (at.turns > light.options_.most_turns / 2) late += radiance;
     }
 
-    // To the floor.
+    // The distance to the floor.
     [[nodiscard]] double reach_m(const Vector3d& from_m, const Vector3d& direction) const {
         const double approach = light.down_.dot(direction);
         if (approach <= 0.0) return kForever;
@@ -196,7 +196,7 @@ struct MonteCarlo::Path {
         }
     }
 
-    // For a ray whose direction is given: evenly over the angle at the lamp.
+    // For a ray of given direction: y is drawn evenly over the angle at the lamp.
     void join_on_sight(const VeilRay& ray, double stratum) {
         for (std::size_t s = 0; s < lamps_m.size(); ++s) {
             const Triangle triangle(
@@ -229,7 +229,7 @@ struct MonteCarlo::Path {
         return at.weight / (1.0 + light.attenuation_per_m_ * at.place_m.norm());
     }
 
-    // From a vertex to the end of the path.
+    // Follows the path from a vertex to its end.
     void follow(Vertex at) {
         const double c = light.attenuation_per_m_;
         const double b = light.turns_.scattering_per_m();
@@ -264,8 +264,8 @@ struct MonteCarlo::Path {
     void trace(const VeilRay& ray, double stratum) {
         const double c = light.attenuation_per_m_;
         const double b = light.turns_.scattering_per_m();
-        // Paths to the floor and not, each with its share: little light comes from the floor in
-        // turbid water, and little from elsewhere in clear water.
+        // Paths that reach the floor and those that do not, each with its share: little light comes
+        // from the floor in turbid water, and little from elsewhere in clear water.
         const double through = std::isfinite(ray.length_m) ? std::exp(-c * ray.length_m) : 0.0;
         if (through > 0.0) {
             follow({.place_m = ray.origin_m + ray.length_m * ray.direction,

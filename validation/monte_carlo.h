@@ -5,7 +5,7 @@
 // light/veil.h).
 //
 // A path leaves the camera along a pixel's ray. It is scattered at rate b_t, by an angle from the
-// phase function; at the floor it is reflected like by a Lambertian surface; along its length it is
+// phase function; at the floor it is reflected as by a Lambertian surface; along its length it is
 // attenuated by a. From each vertex x, lamps are connected in two ways:
 //
 //   at the floor    straight to the lamp:  rho/pi cos(i) I exp(-c d) / d^2
@@ -21,20 +21,19 @@
 //
 //   b_t I exp(-c (s + d)) f P / (f h / dphi + P sin(psi)/psi D + s^2 / (4 pi D))
 //
-// (Veach and Guibas's balance heuristic, SIGGRAPH 1995). From the camera itself, whose direction is
-// one, y is even over the angle at the lamp.
+// (Veach and Guibas's balance heuristic, SIGGRAPH 1995). From the camera itself, whose ray has one
+// direction, y is even over the angle at the lamp.
 //
-// b_t, c   scattering by kLeastTurn or more, and a + b_t [1/m]: what is turned by less is not
-//          followed, for it arrives within 4 cm a metre of where it was going
-// floor    light that has met the floor; veil: that has not
-// tail     what turns beyond most_turns would add. Where water and floor absorb nothing, a path
-// comes
-//          back as a random walk does, and its n-th turn brings light as n^(-3/2): all later turns
-//          together bring 1/(sqrt(2) - 1) times what the second half of the turns followed did.
-//          Any absorption makes it less.
+// b_t, c   scattering by kLeastTurn or more, and a + b_t [1/m]; smaller deflections are not
+//          followed, since the light arrives within 4 cm per metre of its undeflected path
+// floor    light that was reflected by the floor; veil: light that was not
+// tail     the light of turns beyond most_turns. Where water and floor absorb nothing, a path
+//          returns as a random walk does, and its n-th turn contributes as n^(-3/2): all later
+//          turns together contribute 1/(sqrt(2) - 1) times as much as the second half of the turns
+//          followed. Any absorption reduces it.
 //
-// The same seed gives the same bits. A standard error is that of the mean, from the paths' own
-// spread. Limits: no objects, no highlight; the sea has no surface.
+// The same seed gives the same bits. A standard error is that of the mean, from the spread of the
+// paths. Limits: no objects, no highlight; no sea surface.
 #pragma once
 
 #include "rig/rig.h"
@@ -53,8 +52,8 @@
 namespace aphotic {
 
 inline constexpr double kLeastTurn = 2.0 * std::numbers::pi / 180.0;
-// In natural water a path ends after some tens of turns; in water that absorbs nothing it need not
-// end at all.
+// In natural water a path ends after some tens of turns; in water without absorption it may never
+// end.
 inline constexpr int kMostTurns = 250;
 
 struct MonteCarloOptions {
@@ -73,7 +72,7 @@ struct Estimate {
 struct LightOfAllOrders {
     Estimate floor;
     Estimate veil;
-    Estimate sum;  // of both, whose errors are of the same paths
+    Estimate sum;  // of both, from the same paths
     double tail = 0.0;
 };
 
@@ -82,8 +81,8 @@ class MonteCarlo {
     // Throws InputError if the rig has objects or a highlight.
     MonteCarlo(const Rig& rig, double lambda_nm, const MonteCarloOptions& options);
 
-    // Radiance along the ray, to the floor at its end; infinite length: no floor there. stream:
-    // different random numbers for each ray.
+    // Radiance along the ray, to the floor at its end; infinite length: no floor in view. stream:
+    // selects the random numbers, different for each ray.
     [[nodiscard]] LightOfAllOrders radiance(const VeilRay& ray, std::uint64_t stream) const;
 
   private:

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kPatchColumns{"patch", "x", "y", "w", "h", "reference"};
 constexpr std::size_t kNeededPatchColumns = 5;  // of these
 
-// The column of each of kPatchColumns in a line; past its end: absent.
+// The column of each of kPatchColumns in a line; beyond its end: absent.
 using PatchLayout = std::array<std::size_t, kPatchColumns.size()>;
 
 PatchLayout layout_of(const std::string& name,

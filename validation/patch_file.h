@@ -7,9 +7,9 @@
 //   panel fore,120,80,40,40,0.18
 //
 // x, y, w, h  pixels, from 0 at the image's top left
-// reference   what the patch is, and may be left out:
-//               grey          grey, of a reflectance that is not known
-//               0.18          grey that reflects this share
+// reference   the patch's colour; may be omitted:
+//               grey          grey, of unknown reflectance
+//               0.18          grey of this reflectance
 //               66.2 14.5 17  a colour in CIELAB under D65
 //               light-skin    a patch of the colour chart (spectral/colour_chart.h)
 //
@@ -33,7 +33,7 @@ struct Patch {
     int y_px = 0;
     int width_px = 0;
     int height_px = 0;
-    std::string reference{};  // as written: patches with the same one are of one kind
+    std::string reference{};  // as written; patches of the same reference are of one kind
     bool is_grey = false;
     std::optional<Lab> lab{};  // empty: unknown
     std::size_t line = 0;

@@ -32,7 +32,7 @@ struct Sums {
         }
         pixels += other.pixels;
     }
-    // Of I / m - 1, all channels; empty if m is 0.
+    // The sum of squares of I / m - 1 over all channels; empty if m is 0.
     [[nodiscard]] double deviations() const {
         double sum = 0.0;
         for (std::size_t c = 0; c < kChannels; ++c) {
@@ -84,7 +84,7 @@ Sums sums_of(const Patch& patch,
                 sums.squares[c] += sample * sample;
             }
         }
-        // For a colour outside sRGB a channel is clipped to 0; for grey none is.
+        // For a colour outside sRGB a channel is clipped to 0; for grey, none is.
         const bool is_allowed = patch.is_grey ? sums.signal[c] > 0.0 : sums.signal[c] >= 0.0;
         if (!(std::isfinite(sums.signal[c]) && is_allowed)) {
             throw InputError("{}: the patch '{}' has a mean {} of {:.3g}; allowed: {}",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How well an image shows patches of known colour, by the measures used for underwater colour
+// The accuracy of an image's patches of known colour, by the measures used for underwater colour
 // correction.
 //
 // For a patch with mean signal M_c over its pixels, c = R, G, B, and S_c = M_c / k_c:
@@ -8,13 +8,13 @@
 //   degrees     of grey patches, the angle between S and 1, 1, 1
 //   difference  CIEDE2000 between S, taken for linear sRGB, and the reference
 //   unevenness  rms over all pixels and channels of I_c / m_c - 1, m_c the mean of I_c over the
-//               patches of one reference; of a patch whose reference tells no level, over itself
+//               patches of one reference; for a patch whose reference gives no level, over itself
 //
-//   k  1; or of the whole image, which takes away an exposure: least squares of the luminances
-//      against the references; or of each channel, a white balance: the same of R, G and B over the
-//      grey patches of known reflectance
+//   k  1; or one for the whole image, which removes an exposure: least squares of the luminances
+//      against the references; or one for each channel, a white balance: the same of R, G and B
+//      over the grey patches of known reflectance
 //
-// All are 0 at best. The mean of the degrees is the field's "gray-patch mean angular error".
+// All are 0 at best. The mean of the degrees is known as "gray-patch mean angular error".
 #pragma once
 
 #include "validation/image_comparison.h"
@@ -51,7 +51,7 @@ struct PatchRequest {
     std::string image;
     std::string patches;  // a file
     ComparedScale scale = ComparedScale::None;
-    bool is_srgb = false;  // the samples are encoded as sRGB's are; else linear
+    bool is_srgb = false;  // samples have sRGB's encoding; else linear
 };
 
 // Throws InputError for an image without R, G, B, a patch outside it, and a scale that no patch

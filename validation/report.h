@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The results of a validation, for programs (validation.json) and for people (report.html: one page
-// that needs no other file, no script and no network).
+// The results of a validation, for programs (validation.json) and for people (report.html, one page
+// without other files, scripts or network).
 #pragma once
 
 #include "rig/rig.h"
@@ -17,17 +17,17 @@
 
 namespace aphotic {
 
-// Over all comparisons, the largest of each.
+// The largest of each over all comparisons.
 struct EdgeSummary {
-    double share = 0.0;  // of the pixels: on edges, without a bound
+    double share = 0.0;  // of pixels on edges, without a bound
     double max_error = 0.0;
-    double share_in_penumbrae = 0.0;  // of the pixels: compared with the render's own lamps
+    double share_in_penumbrae = 0.0;  // of pixels compared with the render's own lamps
     double max_error_of_penumbrae = 0.0;
 };
 
 struct ValidationReport {
     Rig rig;
-    std::string scene_file{};  // the user's, which POV-Ray rendered and the reference did not
+    std::string scene_file{};  // the user's, rendered by POV-Ray but not traced by the reference
     std::string aphotic_version{};
     std::string povray_version{};
     std::vector<Comparison> wavelengths{};  // radiance, POV-Ray's against the reference's
@@ -35,7 +35,7 @@ struct ValidationReport {
     std::vector<Comparison> channels{};     // signals R, G, B, all three
     CameraImage rendered{};                 // signals, through POV-Ray
     CameraImage traced{};                   // signals, by the reference over the full spectrum
-    std::array<double, kChannels> lamp_signal{};  // the white of both previews
+    std::array<double, kChannels> lamp_signal{};  // white in both previews
     // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is not
     // finite.
     std::vector<float> channel_errors{};
@@ -52,14 +52,14 @@ struct ValidationReport {
     [[nodiscard]] bool has_veil() const { return rig.water.scatters(); }
     // Wavelengths, then channels.
     [[nodiscard]] std::vector<const Comparison*> all() const;
-    // Every comparison holds, and there is one.
+    // Every comparison holds, and there is at least one.
     [[nodiscard]] bool holds() const;
-    // The one that is worst against its bound; the first in a tie.
+    // The worst comparison relative to its bound; the first in a tie.
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
     [[nodiscard]] EdgeSummary edges() const;
-    // Throws std::logic_error, our own mistake, if the parts do not fit together, since writing
-    // would read out of bounds.
+    // Throws std::logic_error, which is a bug, if the parts are inconsistent, since writing would
+    // read out of bounds.
     void check() const;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// report.html: what a validation found, as a page.
+// report.html: the results of a validation, as a page.
 #include "base/atomic_file.h"
 #include "image/preview.h"
 #include "report/html.h"
@@ -75,7 +75,7 @@ std::string edges_in_words(const ValidationReport& report) {
     return words;
 }
 
-// The reader must know before any number that two different scenes were compared.
+// States, before any number, that two different scenes were compared.
 std::vector<std::string> other_scene(const ValidationReport& report) {
     if (report.scene_file.empty()) return {};
     return {fmt::format(
@@ -101,7 +101,7 @@ std::vector<std::string> verdict(const ValidationReport& report) {
     return said;
 }
 
-// Both on the reference's scale.
+// Both images on the reference's scale.
 std::vector<PagePart> images(const ValidationReport& report) {
     const int side = block_side(report.traced.width_px, report.traced.height_px);
     const CameraImage traced = block_means(report.traced, side);
@@ -242,7 +242,7 @@ std::vector<PagePart> numbers(const ValidationReport& report) {
     return parts;
 }
 
-// With the standard error of the truth.
+// The ratio, with the standard error of the truth.
 std::string ratio_to(double model, const Estimate& truth) {
     if (!(truth.mean > 0.0)) return "–";
     return fmt::format("{:.4f} ± {:.4f}", model / truth.mean, truth.standard_error / truth.mean);
@@ -270,7 +270,7 @@ std::vector<PagePart> model_check(const ModelCheck& model) {
         std::move(made)};
 }
 
-// The part of the floor in view if it is level, which no rig file states.
+// The part of the floor in view if it is level, which is not in the rig file.
 std::string field_of_view(const Rig& rig) {
     const Camera& camera = rig.camera;
     const double middle_nm = (camera.range.first_nm + camera.range.last_nm) / 2.0;

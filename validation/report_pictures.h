@@ -7,8 +7,8 @@
 //
 //   colour(e) = blue for -scale .. white for 0 .. red for +scale, in kColourSteps steps
 //
-// Errors beyond the scale get the colour of its end. A block is grey if all of it lies on edges,
-// black if any of its samples is not finite.
+// Errors beyond the scale have the colour of its end. A block is grey if all its samples are on
+// edges, black if any of its samples is not finite.
 #pragma once
 
 #include "image/output_images.h"
@@ -33,14 +33,14 @@ inline constexpr std::uint32_t kNotFiniteColour = 0x000000;
 
 [[nodiscard]] CameraImage block_means(const CameraImage& image, int side);
 
-// The same for one channel, ignoring samples marked as unobserved (comparison.h): NaN where nothing
-// is left. marks may be empty.
+// The same for one channel, ignoring samples marked as unobserved (comparison.h): NaN for blocks
+// without other samples. marks may be empty.
 [[nodiscard]] std::vector<double> block_means(std::span<const float> samples,
                                               int width_px,
                                               int side,
                                               std::span<const unsigned char> marks = {});
 
-// Share of the way along the colours, 0 at the first and 1 at the last; 0xRRGGBB.
+// The colour at a share of the way along the stops, 0 at the first and 1 at the last; 0xRRGGBB.
 [[nodiscard]] std::uint32_t colour_between(std::span<const std::uint32_t> stops, double share);
 
 // step from -(kColourSteps - 1) / 2 to (kColourSteps - 1) / 2; 0xRRGGBB.
@@ -54,7 +54,8 @@ struct ErrorMap {
 };
 
 // errors: one channel's, rows of width_px samples, NaN on edges and where samples are not finite;
-// `a` and `b`, which they came from, tell these two apart. least_side: of the blocks.
+// `a` and `b`, from which they were computed, distinguish these two. least_side: that of the
+// blocks.
 [[nodiscard]] ErrorMap error_map(std::span<const float> errors,
                                  std::span<const float> a,
                                  std::span<const float> b,

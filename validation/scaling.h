@@ -6,9 +6,9 @@
 //
 // a, b  samples of image and reference, of one channel or of all
 //
-// The image may be noisy, and the reference is taken as exact: noise of mean 0 in a leaves the
-// scale right on average. Bright samples weigh most. An image that is k times its reference has
-// scale k.
+// The image may be noisy, and the reference is taken as exact: noise of mean 0 in a does not bias
+// the scale. Bright samples have the most weight. An image that is k times its reference has scale
+// k.
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@ bool is_within(double distance_m, Stretch stretch) {
 std::optional<Hit> hit_sphere(const Sphere& sphere, const SightLine& line, Stretch stretch) {
     const Vector3d from_centre = line.origin_m - sphere.centre_m;
     const double b = from_centre.dot(line.direction);
-    // The distance of the line from the centre, without the difference of two large squares.
+    // The distance of the line from the centre, not from the difference of two large squares.
     const double apart_m = (from_centre - b * line.direction).norm();
     const double quarter = (sphere.radius_m - apart_m) * (sphere.radius_m + apart_m);
     if (quarter < 0.0) return std::nullopt;
@@ -39,7 +39,8 @@ std::optional<Hit> hit_sphere(const Sphere& sphere, const SightLine& line, Stret
     return std::nullopt;
 }
 
-// Where the line enters and leaves the box, and by which faces: 2 axis, + 1 for the greater side.
+// The places where the line enters and leaves the box, and their faces: 2 axis, + 1 for the greater
+// side.
 struct Crossing {
     std::array<double, 2> distance_m{-std::numeric_limits<double>::infinity(),
                                      std::numeric_limits<double>::infinity()};
@@ -103,7 +104,7 @@ struct TracedShape::Nearest {
                crossing->distance_m[1] > stretch.from_m;
     }
 
-    // False: go on, for a nearer one may follow.
+    // False: continue, since a nearer one may follow.
     bool intersectObject(const Triangle& other) {  // NOLINT: Eigen's name
         if (other.face == skip) return false;
         const Vector3d across = line.direction.cross(other.ac_m);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where a ray meets the shapes of a rig, in double precision, for the reference tracer: sphere, box
-// and mesh.
+// The intersections of a ray with the shapes of a rig, in double precision, for the reference
+// tracer: sphere, box and mesh.
 //
 //   sphere  t^2 + 2 b t + c = 0, with the root that does not cancel taken first and the other from
 //           their product c
@@ -53,8 +53,8 @@ class TracedShape {
                                                Stretch stretch,
                                                int skip = -1) const;
 
-    // From a point to the box around the shape's nearest part, 0 within it: no more than to the
-    // shape itself.
+    // The distance from a point to the box around the shape's nearest part, 0 within it: a lower
+    // bound of the distance to the shape itself.
     [[nodiscard]] double least_distance_m(const Eigen::Vector3d& point_m) const;
 
     [[nodiscard]] const Eigen::AlignedBox3d& bounds_m() const { return bounds_m_; }

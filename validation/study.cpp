@@ -59,7 +59,7 @@ constexpr std::array kNumbers{NamedNumber{"promise", &StudyMeasure::promise},
                               NamedNumber{"rms_error", &StudyMeasure::rms_error},
                               NamedNumber{"max_error_on_edges", &StudyMeasure::max_error_on_edges}};
 
-// What a study is about: measures of another are not reused.
+// The subject of a study: measures of another subject are not reused.
 Json subject_of(const Study& study) {
     return {{"rig", {{"title", study.rig_title}, {"sha256", study.rig_sha256}}},
             {"image", {{"width_px", study.width_px}, {"height_px", study.height_px}}},
@@ -80,7 +80,7 @@ struct StudyReference {
 };
 
 // The time of a trace is stored in its image, so that a resumed study does not trace again. Empty
-// if the image is of something else, or not as we wrote it.
+// if the image has another subject, or was not written by us.
 std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
                                                          const std::string& key) {
     if (!fs::exists(file)) return std::nullopt;
@@ -303,7 +303,7 @@ Rig quick_rig(Rig rig) {
     };
     int least = 1;
     while (too_large(least)) ++least;
-    // A divisor of both sizes keeps the field of view exactly, but not at any price: at most twice
+    // A divisor of both sizes preserves the field of view exactly; it is accepted if at most twice
     // as coarse.
     int divisor = least;
     for (int d = 2 * least; d >= least; --d) {
@@ -377,7 +377,7 @@ void run_study(Study& study,
         }
         study.measures.push_back(
             measure(settings[i], i, reference, folder / "settings" / settings[i].name, hands));
-        // Including those still to come, so that an interruption loses none of them.
+        // Including those still to be measured, so that an interruption loses none of them.
         Study so_far = study;
         so_far.measures.insert(so_far.measures.end(), kept.begin(), kept.end());
         write_text_file(file, study_json(so_far));

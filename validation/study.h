@@ -12,10 +12,10 @@
 // A measure is that of its worst channel, off the edges unless said otherwise. One with a sample
 // that is not finite, or with none off the edges, has an infinite error, and is not on the front.
 //
-// Measures stay in the folder, so that an interrupted study continues:
+// Measures are kept in the folder, so that an interrupted study can continue:
 //
 //   reference/image.exr     the reference, with the time of its trace
-//   study.json              the measures; settings/NAME/ while one is made
+//   study.json              the measures; settings/NAME/ exists during a measurement
 //
 // Nothing here runs POV-Ray: the caller supplies the function that renders a setting.
 #pragma once
@@ -34,7 +34,7 @@
 namespace aphotic {
 
 struct StudySetting {
-    std::string name{};   // unique, of letters, digits, - and ., such as "fitted-3": a folder's
+    std::string name{};   // unique, of letters, digits, - and ., such as "fitted-3"; also a folder
     std::string words{};  // for people: "3 fitted wavelengths"
     bool equal_bands = false;
 };
@@ -67,12 +67,12 @@ struct Study {
     std::vector<StudyMeasure> measures{};  // in the order of their settings
 };
 
-// The rig with an image small enough that a few settings take under two minutes; unchanged if it is
-// already. Both sizes are divided by the same whole number, by which the pixels grow. Remainders
+// The rig with an image small enough that a few settings take under two minutes; unchanged if its
+// image is. Both sizes are divided by the same whole number, by which the pixels grow. Remainders
 // are dropped: the field of view is then smaller by under a pixel.
 [[nodiscard]] Rig quick_rig(Rig rig);
 
-// The errors of a measure: of the image against the reference of the same size, planes R, G, B of
+// The errors of a measure, from the image and the reference of the same size, planes R, G, B of
 // each; black is kBlackShare (validation.h) of the channel's brightest. on_edge: 1 for pixels on
 // edges; may be empty.
 void measure_errors(const CameraImage& image,
@@ -80,34 +80,35 @@ void measure_errors(const CameraImage& image,
                     std::span<const unsigned char> on_edge,
                     StudyMeasure& measure);
 
-// By measure: whether it is on the front.
+// Whether each measure is on the front.
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const StudyMeasure> measures);
 
 struct StudyFrames {
-    Manifest manifest{};  // of the frames that are in the folder
+    Manifest manifest{};  // of the frames in the folder
     double promise = 0.0;
     double render_s = 0.0;
 };
 
 struct StudyHands {
-    // Renders the frames of the setting with that index into the folder; not called for one that
-    // was measured before.
+    // Renders the frames of the setting with that index into the folder; not called for settings
+    // measured before.
     std::function<StudyFrames(std::size_t setting, const std::filesystem::path& folder)> render;
     std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
 };
 
 // Fills in the reference and the measures of a study whose rig, versions and cores are set. The
-// folder exists, and nobody else uses it.
+// folder must exist, and must not be in use.
 void run_study(Study& study,
                const Rig& rig,
                const std::vector<StudySetting>& settings,
                const std::filesystem::path& folder,
                const StudyHands& hands);
 
-// study.json: all of the study. A number that is not finite is null.
+// study.json: the whole study. A number that is not finite is null.
 [[nodiscard]] std::string study_json(const Study& study);
 
-// The measures of the same study in such a text; empty if it is another's, or not as we wrote it.
+// The measures of the same study in such a text; empty if it is another study's, or was not written
+// by us.
 [[nodiscard]] std::vector<StudyMeasure> measures_in(std::string_view json, const Study& study);
 
 // study.csv, one row per measure; study.json; study.html, a page with a table and a plot.

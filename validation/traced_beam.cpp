@@ -33,7 +33,7 @@ double angle_from_to(const Vector3d& a, const Vector3d& b) {
 
 // ---- Cones
 
-// The integral of cos^n over a cone; narrow ones leave almost nothing of 1 - cos^n.
+// The integral of cos^n over a cone; for narrow ones 1 - cos^n is a small difference.
 double flux_of_sharp(double half_angle_rad, double n) {
     const double sine2 = std::pow(std::sin(half_angle_rad), 2);
     const double power = n + 1.0;
@@ -59,7 +59,7 @@ double flux_of_soft(const Cone& cone) {
 
 // ---- Tables
 
-// Where an angle lies among a table's: from `below` to the next, by a share.
+// The place of an angle among a table's: at a share of the way from `below` to the next.
 struct Place {
     std::size_t below = 0;
     double share = 0.0;
@@ -119,7 +119,7 @@ double intensity_of(const BeamTable& table, const Vector3d& lamp) {
     const auto vertical = place_among(table.vertical_rad, angles.vertical_rad);
     if (!vertical) return 0.0;
     if (table.horizontal_rad.size() == 1) return value_along(table, 0, *vertical);
-    // For type C they make a full turn, however 360 degrees was rounded.
+    // For type C they make exactly a full turn, whatever the rounding of 360 degrees.
     const double around_rad = table.angles == TableAngles::TypeC
                                   ? std::min(angles.horizontal_rad, table.horizontal_rad.back())
                                   : angles.horizontal_rad;
@@ -130,8 +130,8 @@ double intensity_of(const BeamTable& table, const Vector3d& lamp) {
                      horizontal->share);
 }
 
-// A cell in the angle that determines the solid angle, and in the other, in which I is straight and
-// so contributes the mean of its ends.
+// Cell by cell: in one angle, on which the solid angle depends, by quadrature; in the other I is
+// linear and contributes the mean of its ends.
 double integral_of(const BeamTable& table) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     const bool is_by_horizontal = table.angles == TableAngles::TypeB;
@@ -230,11 +230,11 @@ double flux_through(const Heights& p, const Heights& q) {
         std::atan(q.to_m));
 }
 
-// A quarter of the lens, cut where a point looks past the rectangle's sides: close to a rectangle
-// that is almost a step.
+// A quarter of the lens, cut where the view from a point passes the rectangle's sides, which is
+// almost a step if the rectangle is close.
 double integral_of(const BeamOptics& optics) {
     using Adaptive = boost::math::quadrature::gauss_kronrod<double, 15>;
-    constexpr unsigned kDepth = 6;  // 64 parts of a piece: absurd lenses stay a matter of seconds
+    constexpr unsigned kDepth = 6;  // 64 parts of a piece: absurd lenses take seconds
     constexpr double kError = 1e-10;
     const double radius_m = 0.5 * optics.aperture_m;
     const double s = optics.distance_m;
@@ -243,7 +243,8 @@ double integral_of(const BeamOptics& optics) {
         const double middle = per_height * height_m / s;
         return Heights{middle - 0.5 * side_m / s, middle + 0.5 * side_m / s};
     };
-    // In parts of an interval: Boost compares an error that is not multiplied by its length.
+    // In fractions of an interval, since Boost compares an error that is not multiplied by its
+    // length.
     const auto integrate = [&](const auto& f, double from, double to) {
         const double length = to - from;
         const auto part = [&](double u) { return f(from + length * u); };
@@ -269,14 +270,14 @@ double integral_of(const BeamOptics& optics) {
 
 // ---- Windows
 
-// For one face, from the index and cosine in front to those behind it: its reflectance, and its
+// One face, from the index and cosine in front to those behind it: its reflectance, and its
 // transmittance per unit of the cosine in front.
 struct Face {
     double reflected;
     double let_through_by_cosine;
 };
 
-// One polarisation, s; the other is that with the cosines exchanged.
+// One polarisation, s; the other one follows by exchanging the cosines.
 Face fresnel(double index, double cosine, double index_behind, double cosine_behind) {
     const double sum = index * cosine + index_behind * cosine_behind;
     return {.reflected = square((index * cosine - index_behind * cosine_behind) / sum),
@@ -289,7 +290,7 @@ Face fresnel_p(double index, double cosine, double index_behind, double cosine_b
             .let_through_by_cosine = 4.0 * index * index_behind * cosine_behind / square(sum)};
 }
 
-// I in water / I in air, of the sine in air.
+// I in water / I in air, for the sine in air.
 double window_gain(const BeamWindow& window, double sine) {
     const double n = window.water_index;
     const double g = window.glass_index;
@@ -352,7 +353,7 @@ double TracedBeam::intensity_of_cones(const Vector3d& towards) const {
     const double length = towards.norm();
     const double cosine = towards.dot(axis_) / length;
     if (cosine <= 0.0) return 0.0;
-    double axial = 0.0;  // of cones that fall as the cosine
+    double axial = 0.0;  // of cones that fall off as the cosine
     double other = 0.0;
     for (const TracedCone& cone : cones_) {
         if (cosine < cone.cos_edge) continue;
@@ -399,7 +400,7 @@ double TracedBeam::intensity(const Vector3d& towards) const {
 
 // ---- Edges
 
-// Light in air reaches the plane across the axis.
+// Whether light in air reaches the plane across the axis.
 bool TracedBeam::reaches_the_plane() const {
     if (const auto* table = std::get_if<BeamTable>(&beam_.pattern)) {
         const auto ends_there = [](const std::vector<double>& angles_rad) {
@@ -418,7 +419,8 @@ void TracedBeam::place_edges() {
         end_of_window_ = {.centre = axis_,
                           .radius_rad = std::asin(1.0 / beam_.window->water_index)};
     }
-    // What is within an angle from the plane of that side and the axis, on the axis's side of it.
+    // The directions within an angle from the plane of that side and the axis, on the axis's side
+    // of it.
     const auto half_space = [&](const Vector3d& side, double angle_rad) {
         return Cap{.centre = std::sin(angle_rad) * axis_ - std::cos(angle_rad) * side,
                    .radius_rad = kQuarterTurn};
@@ -437,8 +439,8 @@ void TracedBeam::place_edges() {
     const auto* table = std::get_if<BeamTable>(&beam_.pattern);
     if (!table) {
         for (const Cone& cone : beam_.cones) {
-            // A cone of 90 degrees ends where its cosine does: there is no step, unless it falls
-            // more steeply. Nor is there one where there is no light.
+            // A cone of 90 degrees ends where its cosine is 0, without a step unless it falls more
+            // steeply. Where there is no light, there is no step either.
             constexpr double kRounding = 1e-9;
             const bool ends_before =
                 cone.half_angle_rad < kQuarterTurn - kRounding || cone.exponent < 1.0;
@@ -473,8 +475,8 @@ void TracedBeam::place_edges() {
         }
         return;
     }
-    // A's vertical angle and B's horizontal one are latitudes over the equator of a pole, and end
-    // in no line at 90 degrees; the others are longitudes about it.
+    // A's vertical angle and B's horizontal one are latitudes over the equator of a pole, and have
+    // no line at 90 degrees; the others are longitudes about it.
     const bool is_a = table->angles == TableAngles::TypeA;
     const Vector3d& pole = is_a ? along_ : across_;
     const Vector3d& side = is_a ? across_ : along_;
@@ -508,8 +510,7 @@ void TracedBeam::place_rectangle(const std::array<Cap, 4>& sides,
     }
 }
 
-// Past the window's last angle, the value at that angle. Angles in air grow faster and faster
-// outwards.
+// Beyond the window's last angle, the value at that angle. Angles in air grow ever faster outwards.
 TracedBeam::Aim TracedBeam::in_air(const Aim& in_water) const {
     const double n = beam_.window->water_index;
     const double off_axis = angle_from_to(in_water.towards, axis_);
@@ -549,7 +550,7 @@ bool TracedBeam::is_on_edge(const std::array<Vector3d, 2>& towards, double withi
     return std::ranges::any_of(edges_, [&](const Edge& edge) { return is_on(edge, aims); });
 }
 
-// On the circle a cap's rim is where r cos(x - x_0) = cos(radius).
+// The circle crosses a cap's rim where r cos(x - x_0) = cos(radius).
 void TracedBeam::add_crossings(const Vector3d& e,
                                const Vector3d& u,
                                std::vector<double>& x_rad) const {
@@ -609,7 +610,7 @@ void visit_directions(const Vector3d& axis, double widest_rad, const Visit& visi
 }  // namespace
 
 // Where the lamp moves by e across the axis, the direction turns by |e|/d about the axis, and by
-// |e| cos(theta)/d away from it. cos^n has the slope n sin(theta) then, and a bend of no more than
+// |e| cos(theta)/d away from it. cos^n then has the slope n sin(theta), and a curvature of at most
 // n^2 + n.
 double TracedBeam::steepness_at(const Vector3d& towards, double most) const {
     const double here = intensity(towards);

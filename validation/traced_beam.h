@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam in the reference: from the rig's description (the structs of rig/beam/beam.h), and none of
-// rig/'s functions.
+// A beam in the reference, from the rig's description (the structs of rig/beam/beam.h), without any
+// function of rig/.
 //
 //   I(w)   intensity in the direction w of the sled's frame, per unit of the lamp's power  [1/sr]
 //
@@ -17,7 +17,7 @@
 //            slopes that each takes from the rectangle, to 1e-9
 //   window   Snell and Fresnel at both faces
 //
-// At the limit: one cone of 90 degrees, of exponent 1 and weight 1, is 1 / pi on the axis.
+// Limiting case: one cone of 90 degrees, of exponent 1 and weight 1, is 1 / pi on the axis.
 #pragma once
 
 #include "rig/beam/beam.h"
@@ -41,10 +41,10 @@ struct StrobeSides {
 
 class TracedBeam {
   public:
-    // With the strobe's axis, a unit vector.
+    // axis: the strobe's, a unit vector.
     TracedBeam(const Beam& beam, const Eigen::Vector3d& axis);
 
-    // For a direction of any length but 0.
+    // The direction has any length but 0.
     [[nodiscard]] double intensity(const Eigen::Vector3d& towards) const;
 
     // Adds the angles x, from -pi to pi, at which cos(x) e + sin(x) u crosses a circle about the
@@ -57,8 +57,8 @@ class TracedBeam {
     // Whether there may be light behind the plane across the axis: only for a table.
     [[nodiscard]] bool shines_backwards() const { return shines_backwards_; }
 
-    // Whether either direction is within an angle of an edge, where I steps or falls as steeply as
-    // a step, or one is on its far side. Smooth beams have none.
+    // Whether either direction is within an angle of an edge, where I has a step or falls as
+    // steeply, or the two are on different sides of one. Smooth beams have none.
     [[nodiscard]] bool is_on_edge(const std::array<Eigen::Vector3d, 2>& towards,
                                   double within_rad) const;
 
@@ -73,7 +73,7 @@ class TracedBeam {
         double on_axis;
         double exponent;
         double cos_edge;
-        // 1 - cos where a soft edge begins and ends.
+        // 1 - cos at the start and end of a soft edge.
         bool is_soft;
         double versine_full;
         double versine_none;
@@ -83,7 +83,7 @@ class TracedBeam {
         Eigen::Vector3d centre;
         double radius_rad;
     };
-    // A cap's rim, as far as it is within the others.
+    // The part of a cap's rim that is within the other caps.
     struct Edge {
         Cap cap;
         std::vector<Cap> within;

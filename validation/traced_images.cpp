@@ -31,7 +31,7 @@ CameraImage write_traced_images(const Tracer& tracer,
     return images.finish();
 }
 
-// In rows so that the progress shows.
+// By rows, to report progress.
 std::vector<double> trace_signals(const Tracer& tracer,
                                   const std::function<void(double)>& progress) {
     constexpr int kRows = 32;

@@ -12,7 +12,7 @@ namespace {
 
 using Point = Eigen::Matrix<long double, 2, 1>;
 
-// Just short of the side: there a rectilinear lens has no image, and a fisheye's ray no z.
+// Just below 90 degrees, where a rectilinear lens has no image, and a fisheye's ray has no z.
 constexpr long double kMost_rad = 1.5692L;
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's own lens: the direction in which an image point looks, for a calibration's
-// numbers (rig/camera/lens_model.h has the formula, and no code in common). The distance from the
-// axis is found by bracketing, the decentring by iteration: its correction depends on the previous
-// result, and changes less each time.
+// The reference's own lens: the direction of an image point's ray, for a calibration's numbers
+// (rig/camera/lens_model.h has the formula, but shares no code). The distance from the axis is
+// found by bracketing, the decentring by iteration: its correction depends on the previous result,
+// and converges.
 #pragma once
 
 #include "rig/camera/lens_model.h"
@@ -29,7 +29,7 @@ class TracedLens {
     [[nodiscard]] long double image_radius(long double r) const;  // s r
 
     LensModel lens_;
-    long double most_r_;  // to which s r grows
+    long double most_r_;  // up to which s r grows
     long double most_image_r_;
 };
 

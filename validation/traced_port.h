@@ -6,7 +6,7 @@
 // Flat: n times the unit direction's components across the normal is the same in every medium.
 // Dome: n times the ray's distance from the dome's centre is constant (Bouguer). In the plane of
 // ray and centre, angles are measured from the point of the ray in air that is nearest to the
-// centre, b away from it, with i = asin(b / (n r)) on either side of a face of radius r: the ray
+// centre, at distance b, with i = asin(b / (n r)) on either side of a face of radius r: the ray
 // meets a face at (its direction's angle) - i, and leaves it along that place's angle + i'.
 #pragma once
 

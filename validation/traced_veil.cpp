@@ -61,7 +61,7 @@ std::vector<EmitterPoint> emitter_points() {
 
 }  // namespace
 
-// One lamp, one ray.
+// The computation for one lamp and one ray.
 struct TracedVeil::Work {
     const TracedVeil& veil;
     const Source& source;

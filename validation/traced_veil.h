@@ -4,19 +4,19 @@
 //
 //   A = Phi power sum_i b_i int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt,     psi >= kVeilCut
 //
-// from t = 0 where the ray enters the water to what it meets; the letters are light/veil.h's, whose
-// formulas it does not use. With x the angle at the lamp between its nearest point of the ray, h
+// from t = 0, where the ray enters the water, to its end; the symbols are those of light/veil.h,
+// whose formulas are not used. With x the angle at the lamp between its nearest point of the ray, h
 // away at t = t_0, and the point at t,
 //
 //   dt / d^2 = dx / h,    t + d = t_0 + h tan(45 degrees + x/2),    psi = x + 90 degrees
 //
 // Over x, from edge to edge of the beam and of a table's rows, panels of Gauss and Kronrod are
 // halved until the 15 and the 7 points of each agree to kVeilTolerance of the whole, for each
-// scatterer and for the least and the largest K. Those between are bracketed by them: the points
+// scatterer and for the least and the largest K. Values between them are bracketed, so the points
 // serve every wavelength.
 //
 // An emitter with a size is kVeilLamps x kVeilLamps lamps by Gauss's rule. A lamp on the ray is
-// treated as kVeilBeside_m beside it, where its light is finite. Shadows of objects are omitted.
+// moved beside it by kVeilBeside_m, where its light is finite. Shadows of objects are omitted.
 #pragma once
 
 #include "rig/rig.h"
@@ -40,7 +40,7 @@ struct VeilPoints {
     std::vector<std::vector<double>> light;  // by scatterer  [1/(m sr)]
 };
 
-// A stretch of the camera's ray in water; length_m may be infinite.
+// A part of the camera's ray in water; length_m may be infinite.
 struct VeilRay {
     Eigen::Vector3d origin_m;
     Eigen::Vector3d direction;  // unit

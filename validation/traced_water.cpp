@@ -35,7 +35,7 @@ Real forand_peak(Real d, Real nu, Real s2) {
 
 double value_of(const FournierForand& phase, double psi_rad) {
     using Wide = long double;
-    constexpr double kFarFromOne = 0.1;  // where doubles do
+    constexpr double kFarFromOne = 0.1;  // where doubles suffice
     const double nu = 0.5 * (3.0 - phase.slope);
     const double back = 4.0 / (3.0 * (phase.index - 1.0) * (phase.index - 1.0));
     const double half_sine = std::sin(0.5 * psi_rad);
@@ -59,7 +59,7 @@ double value_of(const FournierForand& phase, double psi_rad) {
                       (3.0 * cosine * cosine - 1.0);
 }
 
-// As measured, not scaled: a straight line in log-log if possible, otherwise linear.
+// As measured, not scaled: linear in log-log if possible, otherwise linear.
 double value_of(const PhaseTable& table, double psi_rad) {
     const auto& angles = table.angle_rad;
     std::size_t i = 0;
@@ -78,7 +78,7 @@ double unscaled(const PhaseFunction& phase, double psi_rad) {
     return std::visit([&](const auto& kind) { return value_of(kind, psi_rad); }, phase.kind);
 }
 
-// 2 pi int p sin dpsi, over the logarithm of the angle, since forward peaks are powers of it.
+// 2 pi int p sin dpsi, over the logarithm of the angle, since forward peaks are power laws.
 double share_between(const PhaseFunction& phase, double from_rad, double to_rad) {
     using Adaptive = boost::math::quadrature::gauss_kronrod<double, 31>;
     constexpr unsigned kDepth = 12;
@@ -107,7 +107,7 @@ Eigen::ArrayXd light_left(const Eigen::ArrayXd& depth) {
 TracedPhase::TracedPhase(const PhaseFunction& phase) : phase_(phase) {
     if (const auto* table = std::get_if<PhaseTable>(&phase.kind)) {
         kinks_rad_ = table->angle_rad;
-        constexpr double kNoAngle = 1e-30;  // within which a table has no light to speak of
+        constexpr double kNoAngle = 1e-30;  // within which a table has negligible light
         scale_ = 1.0 / share_beyond(kNoAngle);
     }
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Water in the reference: from the rig's description (the tables of spectral/water.h, the
-// parameters of spectral/phase_function.h), and none of spectral/'s formulas.
+// Water in the reference, from the rig's description (the tables of spectral/water.h, the
+// parameters of spectral/phase_function.h), without any formula of spectral/.
 //
 //   K = multiple (a + sum of b_i S_i(kLossCut)) + uniform_loss                   [1/m]
-//   S_i(psi) = 2 pi int_psi^pi p_i(x) sin(x) dx      share that is turned by more than psi
+//   S_i(psi) = 2 pi int_psi^pi p_i(x) sin(x) dx      share deflected by more than psi
 //
-// by quadrature of p_i from the back, so that no forward peak is summed; a formula has its own
-// scale, a table is scaled by its own integral. Fournier and Forand's formula is 0/0 at d = 1: it
-// is computed in long double, and within kForandNear of there from six places around, to 1e-11.
+// by quadrature of p_i from the back, which excludes the forward peak; a formula is normalised, a
+// table is scaled by its own integral. Fournier and Forand's formula is 0/0 at d = 1: it is
+// computed in long double, and within kForandNear of that from six places around, to 1e-11.
 //
 // Light attenuated below e^-kBlackDepth is black: doubles end soon after, and Eigen's vectorised
 // exponential never goes below e^-709.8.
@@ -26,7 +26,7 @@ namespace aphotic {
 inline constexpr double kForandNear = 1e-4;
 inline constexpr double kBlackDepth = 700.0;
 
-// The light left after so many optical depths.
+// The share of light left at an optical depth.
 [[nodiscard]] double light_left(double depth);
 [[nodiscard]] Eigen::ArrayXd light_left(const Eigen::ArrayXd& depth);
 
@@ -53,9 +53,9 @@ class TracedWater {
     [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
 
     [[nodiscard]] bool scatters() const { return !phases_.empty(); }
-    // One per scatterer; empty if the water does not scatter.
+    // One for each scatterer; empty if the water does not scatter.
     [[nodiscard]] const std::vector<TracedPhase>& phases() const { return phases_; }
-    // The share that a scatterer turns by more than kLossCut.
+    // The share that a scatterer deflects by more than kLossCut.
     [[nodiscard]] double lost(std::size_t scatterer) const { return lost_[scatterer]; }
 
   private:

@@ -31,19 +31,19 @@ double sight_error_rad(const Camera& camera) {
     return camera.port ? kEdgeBehindPortRad : kEdgeRad;
 }
 
-// The second derivative of a lamp's light by its place in the emitter's plane, as a share of the
-// light and in units of 1/d^2. With e the direction in which it moves, c = e.v the cosine to the
-// ray v and s = e.n the rise over the surface, cos(theta) d does not change, cos(i) d grows by s,
-// and
+// The second derivative of a lamp's light by its place in the emitter's plane, relative to the
+// light and in units of 1/d^2. With e the direction in which the lamp moves, c = e.v the cosine to
+// the ray v and s = e.n the rise over the surface, cos(theta) d does not change, cos(i) d grows by
+// s, and
 //
 //   f''/f = (c^2 (M^2 + M + m) - M) / d^2 + 2 s c M / (d h),   M = m + K d,  m = n + 3
 //
-// for a beam that falls as cos^n: k^2 + 9 k + 24 and k + 4 for n = 1. On a floor, of which the lamp
-// is h over every point, that is at most ((M - 1)^2 + m - 1) / h^2 with k = K h, where a vertical
-// emitter is straight above; on anything that is d away, at most M^2 + m with s = 0. Both sides of
-// an emitter together have no more than one, for their c^2 add up to no more than 1. A highlight,
-// cos^n of an angle that turns by 1/d, bends by n at its top to both sides, and on its flank it
-// slopes by (n/e)^(1/2) at most, which counts twice with the light's own slope M.
+// for a beam that falls as cos^n: k^2 + 9 k + 24 and k + 4 for n = 1. On a floor at height h below
+// the lamp, that is at most ((M - 1)^2 + m - 1) / h^2 with k = K h, straight below a vertical
+// emitter; on any surface at distance d, at most M^2 + m with s = 0. Both sides of an emitter
+// together have no more than one, since their c^2 add up to at most 1. A highlight, cos^n of an
+// angle that changes by 1/d, has a curvature of n at its top in both directions, and on its flank a
+// slope of at most (n/e)^(1/2), which counts twice with the light's own slope M.
 double bend_of_light(double k, double n, bool is_floor, double phong_size) {
     const double m = is_floor ? n + 2.0 : n + 3.0;
     const double diffuse = (k + 2.0 * m) * k + m * (m + 1.0);
@@ -51,7 +51,7 @@ double bend_of_light(double k, double n, bool is_floor, double phong_size) {
     return diffuse + 2.0 * phong_size + 2.0 * flank * (k + (n + 3.0));
 }
 
-// For an emitter, in shares of its sides from its middle.
+// Places on an emitter, in shares of its sides from its middle.
 constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
     {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
 
@@ -106,10 +106,10 @@ void Tracer::place_lamps() {
     place_edges();
 }
 
-// Small enough for the midpoint rule, whose error is h^2/24 of the second derivative, to meet
+// Small enough for the midpoint rule, whose error is h^2/24 of the second derivative, to achieve
 // kEmitterError at distance d: at every plane, and in the signals by each wavelength's share in
-// them. The shortest path's share counts: on longer paths, wavelengths that are attenuated more
-// have less.
+// them. The shares are those on the shortest path, since on longer paths wavelengths of stronger
+// attenuation have less.
 double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     double phong_size = 0.0;
     for (const Surface& surface : surfaces_) {
@@ -120,7 +120,8 @@ double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     const ArrayXd bend =
         depth.unaryExpr([&](double k) { return bend_of_light(k, n, is_floor, phong_size); });
     const auto grid = static_cast<Eigen::Index>(signal_nodes_);
-    // Lamps 3.5 mm apart for each metre: the steps of a cone's edge are as fine as the lamps.
+    // Lamps 3.5 mm apart per metre of distance: the steps of a cone's edge are as fine as the
+    // lamps.
     constexpr double kLeastBend = 40.0;
     double most = std::max(kLeastBend, bend_of_light(0.0, n, is_floor, phong_size));
     if (bend.size() > grid) most = std::max(most, bend.tail(bend.size() - grid).maxCoeff());
@@ -172,8 +173,8 @@ EmitterLamps Tracer::lamps_of(std::size_t s) const {
     return lamps;
 }
 
-// Given lamps are points, each with its own edges and shadows; otherwise the whole emitter is
-// meant, of which the lamps are only a sample.
+// Given lamps are points, each with its own edges and shadows; otherwise edges are those of the
+// whole emitter, which the lamps only sample.
 void Tracer::place_edges() {
     if (!options_.rendered_lamps.empty()) {
         rim_lamps_ = lamps_;
@@ -201,7 +202,7 @@ void Tracer::place_edges() {
     }
 }
 
-// Of glass and water, relative to air; without a port nothing is refracted.
+// The indices of glass and water, relative to air; without a port there is no refraction.
 Tracer::Index Tracer::index_at(double lambda_nm) const {
     if (!rig_.camera.port) return {.glass = 1.0, .water = 1.0};
     return {.glass = rig_.camera.port->glass.index(lambda_nm),
@@ -231,7 +232,7 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
             .glass = rig_.camera.port->glass.index(middle_nm),
             .water = seawater_index(middle_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
     }
-    std::vector<Vector3d> places_m;  // that lamps may have
+    std::vector<Vector3d> places_m;  // possible places of lamps
     for (const Strobe& strobe : rig_.strobes) {
         for (const auto& [x, y] : kCornersAndMiddle) {
             if (x == 0.0 || strobe.emitter) places_m.push_back(place_on_emitter(strobe, x, y));
@@ -254,8 +255,8 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                                     rig_.camera.height_px * j / static_cast<double>(kSteps));
         }
     }
-    // Towards the horizon paths grow without end, and objects lie between the grid's points, so
-    // every pixel is used.
+    // Towards the horizon paths grow without bound, and objects may lie between the grid's points,
+    // so every pixel is used.
     const bool is_smooth = is_all_floor && shapes_.empty();
     for (int row = 0; row < rig_.camera.height_px && !is_smooth; ++row) {
         for (int column = 0; column < rig_.camera.width_px; ++column) {
@@ -270,7 +271,7 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                          veil_in_view(family, is_all_floor));
 }
 
-// From where a ray enters the water.
+// The distance from the point where a ray enters the water to the nearest lamp.
 double Tracer::nearest_lamp_m() const {
     constexpr int kSteps = 16;
     const Index index = index_at(0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm));
@@ -294,8 +295,8 @@ double Tracer::nearest_lamp_m() const {
     return nearest_m;
 }
 
-// From the lamp nearest to where any ray enters the water; as far as the floor's light goes, or as
-// far as light goes at all if the image sees the horizon.
+// Paths from the lamp nearest to any ray's entry into the water, up to the floor light's longest
+// path, or to the range of light if the image sees the horizon.
 VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) const {
     constexpr double kRoom = 1.05;
     constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
@@ -390,7 +391,7 @@ double Tracer::widest_pixel_rad() const {
     return widest_rad;
 }
 
-// What the point (column, row) of the image sees; false if nothing.
+// Finds what the point (column, row) of the image sees; false if there is no surface.
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const std::optional<WideVector> in_air = sight(column, row);
     return in_air && look_along(*in_air, index, view);
@@ -414,8 +415,8 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
     const WideVector& wide = ray.direction;
     const Vector3d& origin_m = ray.origin_m;
     Vector3d direction = wide.cast<double>();
-    // Near the horizon the ray and the vertical are nearly perpendicular: their product is the
-    // remainder of a difference, of which doubles keep few digits.
+    // Near the horizon the ray and the vertical are nearly perpendicular: their product is a small
+    // difference, which has few digits in doubles.
     const long double approach = wide.dot(exact_down_) / wide.norm();
     const double depth_m = height_m(origin_m);
     const bool meets_floor = approach > 0.0L && depth_m > 0.0;
@@ -443,8 +444,8 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
     return true;
 }
 
-// Whether something blocks this stretch of the way from the point to the lamp. A face that turns
-// away is detected by its normal.
+// Whether an object blocks this part of the way from the point to the lamp. A face turned away is
+// detected by its normal.
 bool Tracer::is_blocked(const Lamp& lamp, const View& view, Stretch stretch) const {
     const Vector3d to_lamp = lamp.position_m - view.point_m;
     const double d = to_lamp.norm();
@@ -462,7 +463,7 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const double d2 = from_lamp.squaredNorm();
     const double d = std::sqrt(d2);
-    // On the floor from the lamp's height, which keeps its digits for grazing light.
+    // On the floor from the lamp's height, which is accurate for grazing light.
     const double cos_incidence =
         (view.surface == 0 ? height_m(lamp.position_m) : -from_lamp.dot(view.normal)) / d;
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
@@ -474,20 +475,20 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Surface& surface = surfaces_[view.surface];
     if (surface.phong > 0.0) {
         const double alignment = -view.mirrored.dot(from_lamp) / d;
-        if (alignment > 0.0) {  // otherwise none, even if phong_size is 0
+        if (alignment > 0.0) {  // otherwise no highlight, even if phong_size is 0
             found.specular = arriving * surface.phong * std::pow(alignment, surface.phong_size);
         }
     }
     return found;
 }
 
-// From the shortest to the longest wavelength that is traced.
+// From the shortest to the longest traced wavelength.
 WavelengthRange Tracer::traced_range() const {
     const auto [first, last] = std::ranges::minmax_element(lambda_nm_);
     return {.first_nm = *first, .last_nm = *last};
 }
 
-// What its ray shows, at every wavelength.
+// The radiance along a pixel's ray, at every wavelength.
 void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd& radiance) const {
     View view;
     if (!rig_.camera.port) {
@@ -509,7 +510,7 @@ void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd&
         return;
     }
     if (lambda_nm_.empty()) return;
-    // Computed for every wavelength, each with its own ray.
+    // Holds for all wavelengths, each of which has its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     if (veil_) {
         radiance += veil_->along([&](std::size_t j) {
@@ -567,8 +568,8 @@ bool Tracer::is_on_beam_edge(double column,
                                    kAslant * sight_rad * views.at(e).distance_m / d_m,
                                    std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
-        // Dispersion's path is curved: each half leaves its own chord by a quarter of what the
-        // middle leaves that of the whole, and twice that is margin.
+        // Dispersion's path is curved: each half deviates from its own chord by a quarter of the
+        // middle's deviation from the whole chord; twice that gives a margin.
         const Vector3d first = paths_m[0].normalized();
         const Vector3d last = paths_m[2].normalized();
         const Vector3d off = paths_m[1].normalized() - 0.5 * (first + last);
@@ -583,8 +584,8 @@ bool Tracer::is_on_beam_edge(double column,
     });
 }
 
-// Ignoring its beam: a lamp in front of the surface, which is in front of the lamp, with nothing
-// between.
+// Ignores the beam: the lamp is in front of the surface, which is in front of the lamp, and nothing
+// is in between.
 bool Tracer::shines_on(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const bool is_ahead = from_lamp.dot(rig_.strobes[lamp.strobe].axis) > 0.0;
@@ -599,7 +600,7 @@ bool Tracer::shows_the_same(const View& a, const View& b) const {
            });
 }
 
-// For what the pixel itself shows, whatever its neighbours show.
+// For the surface in the pixel itself, regardless of its neighbours.
 bool Tracer::is_uncertain(const View& view) const {
     const bool is_of_mesh = view.surface > 0 && shapes_[view.surface - 1].is_mesh();
     std::vector<int> lit(rig_.strobes.size(), 0);
@@ -622,7 +623,7 @@ bool Tracer::is_uncertain(const View& view) const {
            std::ranges::any_of(rim_lamps_, looks_uncertain);
 }
 
-// How close the camera's ray, or a lamp's to what it shows, comes to an object.
+// Whether the camera's ray, or a lamp's to the surface in view, comes close to an object.
 bool Tracer::is_near_an_object(const View& view, double reach_m) const {
     const Vector3d pupil_m = Vector3d::Zero();
     if (view.surface > 0) return true;
@@ -667,8 +668,8 @@ double Tracer::change_between(const View& from, const View& to, double lambda_nm
     return all > 0.0 ? std::log1p(change / all) : std::numeric_limits<double>::infinity();
 }
 
-// Everything that the image point shows in the range, and within so many pixels of it, is floor
-// that no object hides from camera or lamp.
+// Whether everything in view at the image point over the range, and within a number of pixels of
+// it, is floor that no object hides from camera or lamp.
 bool Tracer::is_clear_of_objects(double column,
                                  double row,
                                  WavelengthRange range,
@@ -686,8 +687,8 @@ bool Tracer::is_clear_of_objects(double column,
     return !is_near_an_object(view, reach_m);
 }
 
-// A lamp's light is so near its end on a rounded object, or its beam so steep, that the error of
-// POV-Ray's rays matters.
+// Whether a lamp's light is so close to its limit on a rounded object, or its beam so steep, that
+// the error of POV-Ray's rays matters.
 bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
     const double reach_px = sight_error_rad_ / pixel_rad_;
     const Index index = index_at(lambda_nm);

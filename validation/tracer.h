@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The reference: our own tracer, which shares the rig and the spectra with the POV-Ray path, but no
-// geometry or light code.
+// code for geometry or light.
 //
 // For every pixel and every wavelength of its grid: the camera's ray, through the port if there is
 // one (each wavelength refracted by its own indices), to the floor or to the object before it
@@ -20,11 +20,11 @@
 //
 // Double precision, except for heights above the floor and the angle to the horizon, which are
 // small differences at the extremes and computed in long double. The spectral grid is exact to
-// kSpectralError of a channel's signal (full_spectrum.h). An emitter with a size is as many equal
-// lamps as keep the smooth part of its light to kEmitterError of the value, at every plane's
-// wavelength and in every signal (for a beam whose falloff is not cos^n, by an estimate:
-// TracedBeam::steepness()); a beam's edge is a staircase with as many steps. Every term of a sum
-// has the same sign, so a sum of n terms is accurate to n 1.1e-16.
+// kSpectralError of a channel's signal (full_spectrum.h). An emitter with a size is represented by
+// as many equal lamps as keep the error of the smooth part of its light within kEmitterError, at
+// every plane's wavelength and in every signal (for a beam whose falloff is not cos^n, by an
+// estimate: TracedBeam::steepness()); a beam's edge is a staircase with as many steps. Every term
+// of a sum has the same sign, so a sum of n terms is accurate to n 1.1e-16.
 #pragma once
 
 #include "rig/rig.h"
@@ -55,23 +55,24 @@ inline constexpr double kEmitterError = 2e-5;
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
 // For a calibrated lens, whose rays POV-Ray interpolates to 2e-6 (kRayErrorRad of
-// scene_gen/camera_rays.h) in a mesh in single precision, 2e-7 more. In angle of view: at a lamp
-// closer to the floor it is larger in proportion.
+// scene_gen/camera_rays.h) in a mesh in single precision, 2e-7 more. It is an angle of view; at a
+// lamp closer to the floor it is larger in proportion.
 inline constexpr double kEdgeThroughLensRad = 2.2e-6;
-// For an object's outline, its faces and its shadows: where the image shifted by so much shows
-// another face or is lit by other lamps. POV-Ray stores meshes in single precision, 0.1 um at 2 m.
+// For an object's outline, its faces and its shadows: edges are where the image, shifted by this
+// much, shows another face or is lit by other lamps. POV-Ray stores meshes in single precision, 0.1
+// um at 2 m.
 inline constexpr double kEdgePx = 2e-3;
 // POV-Ray ignores blockers this close to the lit point or to the lamp (SHADOW_TOLERANCE, 1e-3 of
 // its units, ours are metres; plus some rounding). Behind such a blocker it may also miss a farther
 // part of the same mesh.
 inline constexpr double kNoShadowWithin_m = 1.01e-3;
-// A mesh's face that a lamp grazes: below this cosine POV-Ray's single-precision normals matter.
+// For a mesh's face at grazing light: below this cosine, POV-Ray's single-precision normals matter.
 inline constexpr double kGrazing = 1e-3;
-// Where the rounding of a port's index or of a lens's rays changes the light on an object by more
-// than this, half of what the half floats leave of validation.h's bound.
+// An edge is where the rounding of a port's index or of a lens's rays changes the light on an
+// object by more than this, half of the part of validation.h's bound that half floats leave.
 inline constexpr double kRoundingChange = 5e-5;
-// On an object behind a port, dispersion may change the light by this much (its logarithm) and no
-// more, as a plan assumes (kObjectTilt of scene_gen/light_paths.h).
+// On an object behind a port, dispersion may change the light by at most this much (its logarithm),
+// as a plan assumes (kObjectTilt of scene_gen/light_paths.h).
 inline constexpr double kSteepest = 0.05;
 
 // Equal lamps that represent an emitter, in even rows.
@@ -83,12 +84,12 @@ struct EmitterLamps {
 struct TraceOptions {
     bool signals = true;            // R, G, B over the full spectrum
     std::vector<double> planes_nm;  // and the radiance at these wavelengths
-    int threads = 1;                // changes no bit
+    int threads = 1;                // does not affect the result
     // Lamps across and along every emitter with a size; 0: as kEmitterError requires.
     int lamps_across = 0;
     int lamps_along = 0;
     // By strobe, the lamps of another renderer, to trace exactly its image: edges are then those of
-    // each lamp, and no emitter has a penumbra. Empty: as above.
+    // each lamp, without penumbrae. Empty: as above.
     std::vector<EmitterLamps> rendered_lamps{};
 };
 
@@ -110,20 +111,19 @@ class Tracer {
 
     [[nodiscard]] std::size_t planes() const;
 
-    // 1 for every pixel, row by row, whose value is a matter of rounding, or steps, somewhere in
+    // 1 for every pixel, row by row, whose value depends on rounding, or has a step, somewhere in
     // the range:
     //   beams    its centre is within kEdgeRad of a beam's edge (kEdgeBehindPortRad behind a port,
     //            whose index POV-Ray keeps in single precision, kEdgeThroughLensRad with a lens),
     //            an emitter of a size has lamps on both sides of it, or dispersion takes it across;
     //            a smooth beam has none, unless light changes by kRoundingChange through the error
     //            of a lens's rays
-    //   objects  within kEdgePx or that error, or by dispersion, the image shows another face or
-    //   other lamps
-    //            shine on it; an emitter is hidden in part; a blocker is nearer than
+    //   objects  within kEdgePx or that error, or by dispersion, the image shows another face or is
+    //            lit by other lamps; an emitter is hidden in part; a blocker is nearer than
     //            kNoShadowWithin_m; a lamp grazes a mesh; light changes by kSteepest through
     //            dispersion, or by kRoundingChange through the rounding of a port's index or a
     //            lens's rays
-    // within_px: also pixels about so many from an edge, for images that blur it.
+    // within_px: includes pixels within about this distance of an edge, for images that blur it.
     [[nodiscard]] std::vector<unsigned char> on_edges(WavelengthRange range,
                                                       double within_px = 0.0) const;
     // The same for these pixels only.
@@ -133,7 +133,7 @@ class Tracer {
     // The ray of an image point at a wavelength, up to what it sees; empty if it sees nothing.
     [[nodiscard]] std::optional<VeilRay> ray(double column, double row, double lambda_nm) const;
 
-    // What an image point shows at a wavelength; empty if it sees nothing.
+    // The surface that an image point sees at a wavelength; empty if it sees none.
     struct Seen {
         Eigen::Vector3d point_m;
         Eigen::Vector3d normal;   // unit, towards the camera
@@ -152,7 +152,7 @@ class Tracer {
         std::size_t strobe;
         Eigen::Vector3d position_m;
     };
-    // The points from which a strobe's beam has its edges, and how far its lamps spread about it.
+    // A point from which a strobe's beam has its edges, and the extent of its lamps about it.
     struct Apex {
         std::size_t strobe;
         Eigen::Vector3d position_m;
@@ -178,7 +178,7 @@ class Tracer {
         double distance_m = 0.0;   // in water
         std::size_t surface = 0;
         int face = 0;
-        bool is_clear = false;  // set beforehand: no object is near, and none is searched for
+        bool is_clear = false;  // set beforehand: no object is near, so none is searched for
     };
     struct Index {
         double glass;
@@ -195,9 +195,9 @@ class Tracer {
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
     [[nodiscard]] double nearest_lamp_m() const;
     [[nodiscard]] VeilLights veil_in_view(const LightFamily& family, bool is_all_floor) const;
-    // On the floor.
+    // The height over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
-    // The direction of an image point in air, z = 1; empty where the lens has no image.
+    // The direction of an image point in air, with z = 1; empty where the lens has no image.
     [[nodiscard]] std::optional<WideVector> sight(double column, double row) const;
     [[nodiscard]] bool look_along(const WideVector& sight, const Index& index, View& view) const;
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;
@@ -207,7 +207,7 @@ class Tracer {
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
     void trace_sight(int column, int row, const WideVector& in_air, Eigen::ArrayXd& radiance) const;
     void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
-    // Of every plane, `stride` apart.
+    // Writes a sample to every plane, `stride` apart.
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
     [[nodiscard]] bool is_on_edge(std::size_t pixel,
                                   WavelengthRange range,
@@ -224,7 +224,7 @@ class Tracer {
     [[nodiscard]] bool is_on_steep_light(double column, double row, WavelengthRange range) const;
     [[nodiscard]] double edge_px() const;
     [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
-    // Of the range's ends, its middle between them.
+    // The indices at the range's start, middle and end.
     [[nodiscard]] std::array<Index, 3> indices_over(WavelengthRange range) const;
     [[nodiscard]] bool is_on_beam_edge(double column,
                                        double row,
@@ -249,7 +249,7 @@ class Tracer {
     TraceOptions options_;
     std::optional<TracedLens> lens_;
     double pixel_rad_;
-    double sight_error_rad_;  // of POV-Ray's rays, by its single precision
+    double sight_error_rad_;  // of POV-Ray's rays, from its single precision
     WideVector exact_down_;
     Eigen::Vector3d down_;
     std::vector<TracedBeam> beams_;  // by strobe

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The angles by which a Monte Carlo scatters light, and their probabilities: the phase functions of
-// all scatterers at one wavelength, weighted by their scattering, from a least turn on.
+// all scatterers at one wavelength, weighted by their scattering, from a least angle on.
 //
 //   P(psi)  density of directions,  2 pi int_least^pi P sin(psi) dpsi = 1     [1/sr]
 //
@@ -20,12 +20,12 @@ class TurnTable {
     // At one wavelength. least_rad: above 0.
     TurnTable(const TracedWater& water, double lambda_nm, double least_rad);
 
-    // Of light turned by least_rad or more  [1/m]
+    // Scattering by least_rad or more  [1/m]
     [[nodiscard]] double scattering_per_m() const { return scattering_per_m_; }
     [[nodiscard]] double least_rad() const { return angle_rad_.front(); }
 
     [[nodiscard]] double density(double psi_rad) const;  // P; 0 below the least
-    // The angle below which the share `uniform` of all turns lies; 0 <= uniform < 1.
+    // The angle below which the share `uniform` of all scattering lies; 0 <= uniform < 1.
     [[nodiscard]] double quantile(double uniform) const;
 
   private:

@@ -14,9 +14,9 @@
 namespace aphotic {
 namespace {
 
-// Planes held at a time, of each renderer.
+// The number of planes in memory, for each renderer.
 constexpr std::size_t kPlanesAtATime = 6;
-// The share of the signals in the work, for the progress: a full spectrum against a few planes.
+// The signals' share of the work, for the progress: a full spectrum against a few planes.
 constexpr double kShareOfSignals = 0.5;
 
 std::size_t pixels_of(const Rig& rig) {
@@ -24,7 +24,7 @@ std::size_t pixels_of(const Rig& rig) {
            static_cast<std::size_t>(rig.camera.height_px);
 }
 
-// The wavelength, as short as distinguishes it from the others.
+// The wavelength, with as few digits as distinguish it from the others.
 std::string wavelength_name(double lambda_nm) {
     return fmt::format("{:.6g} nm", lambda_nm);
 }
@@ -67,7 +67,7 @@ struct HeldPlane {
     std::string name;
     std::span<const float> rendered;
     std::span<double> traced;
-    std::span<const double> of_lamps;  // in the penumbrae, by the render's own
+    std::span<const double> of_lamps;  // in the penumbrae, by the render's own lamps
     double black = 0.0;
     double bound = 0.0;
 };
@@ -96,7 +96,7 @@ void compare_radiance(const Rig& rig,
                       ValidationReport& report) {
     const std::size_t pixels = pixels_of(rig);
     const std::size_t count = rendered.lambda_nm.size();
-    // Without a port nothing is refracted, and all wavelengths have the same edges.
+    // Without a port there is no refraction, and all wavelengths have the same edges.
     std::optional<Edges> edges;
     for (std::size_t first = 0; first < count; first += kPlanesAtATime) {
         const std::size_t part = std::min(kPlanesAtATime, count - first);
@@ -182,7 +182,7 @@ void compare_signals(const Rig& rig,
 
 namespace {
 
-// Only the veil is left where all is black.
+// If all surfaces are black, only the veil remains.
 VeilShare traced_veil_share(Rig rig, const CameraImage& traced) {
     VeilShare share{};
     if (!rig.water.scatters()) return share;

@@ -26,7 +26,7 @@ ArrayXXd lagrange(const ArrayXd& nodes, const ArrayXd& places) {
     return shares;
 }
 
-// From least to most, denser towards both.
+// From least to most, denser towards the ends.
 ArrayXd chebyshev(double least, double most, int count) {
     ArrayXd nodes(count);
     for (int n = 0; n < count; ++n)

@@ -10,9 +10,10 @@
 // 1e-12 of that sum; farther points are summed at each wavelength.
 //
 // Behind a port each wavelength has its own ray. The rays diverge little and smoothly, so the veil
-// is interpolated over the wavelength that refracts the ray, with the water's numbers of each
-// wavelength, between 3 rays, 5, 9 and 17, until two in turn agree to kVeilOverRays everywhere. If
-// an edge of a beam or of an object lies between the rays they do not, and every ray is traced.
+// is interpolated over the wavelength that refracts the ray, with the water's properties at each
+// wavelength, between 3, 5, 9 and 17 rays, until two successive results agree to kVeilOverRays
+// everywhere. If an edge of a beam or of an object lies between the rays, they do not agree, and
+// every ray is traced.
 #pragma once
 
 #include "rig/rig.h"
@@ -53,9 +54,9 @@ class VeilSpectrum {
     TracedVeil veil_;
     Eigen::ArrayXd loss_per_m_;
     std::vector<std::vector<Eigen::ArrayXd>> light_;  // by strobe, scatterer: Phi power b
-    Eigen::ArrayXd nodes_per_m_;                      // of K; none for few wavelengths
+    Eigen::ArrayXd nodes_per_m_;                      // of K; empty for few wavelengths
     Eigen::ArrayXXd shares_of_nodes_;                 // wavelength, node
-    std::vector<Rays> rays_;                          // each finer than the one before
+    std::vector<Rays> rays_;                          // each finer than the previous one
 };
 
 }  // namespace aphotic
