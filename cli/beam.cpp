@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic beam RIG:NAME|FILE: what a data sheet says of a beam, its plot, the beam as a file of
-// other programs, and the sharp cones that come closest.
+// aphotic beam RIG:NAME|FILE: a beam's data sheet, its plot, the beam as a file for other programs,
+// and the sharp cones that fit it best.
 #include "rig/beam/beam.h"
 
 #include "base/degrees.h"
@@ -43,7 +43,7 @@ struct BeamCommandOptions {
     bool json = false;
 };
 
-// A strobe of the rig that has the beam.
+// A strobe of the rig with this beam.
 struct BeamUser {
     std::string name;
     std::optional<double> luminous_flux_lm;
@@ -53,13 +53,13 @@ struct ShownBeam {
     BeamCommandOptions options;
     Beam beam;
     std::vector<BeamUser> users;
-    std::optional<double> stated_lm;  // by the file
+    std::optional<double> stated_lm;  // in the file
     BeamFigures figures;
     std::optional<ConeFit> fit;
     std::optional<double> export_error;
 };
 
-// For a file, which is as bright as it states: a lamp of its own lumens.
+// For a file: a lamp of the flux that it states.
 void take_file(const std::string& file, ShownBeam& shown) {
     if (rig_settings()) throw InputError("--set: found with {}; allowed: with a rig", file);
     const PhotometricFile read = read_photometric_file(file);
@@ -181,7 +181,7 @@ void print(const ShownBeam& shown) {
     }
 }
 
-// The two planes over the angle, and as the lamp throws them.
+// The two planes over the angle, and as polar plots.
 void plot(const Beam& beam, const std::string& file) {
     constexpr int kSteps = 1800;
     constexpr double kStep_deg = 0.1;
@@ -218,7 +218,7 @@ void plot(const Beam& beam, const std::string& file) {
     write_plots(std::vector<Plot>{cartesian, polar}, file);
 }
 
-// For the first lamp whose lumens are known; otherwise for a thousand.
+// For the first lamp of known flux; otherwise for 1000 lumens.
 double exported_flux_lm(const std::vector<BeamUser>& users) {
     for (const BeamUser& user : users) {
         if (user.luminous_flux_lm) return *user.luminous_flux_lm;

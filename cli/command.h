@@ -11,8 +11,8 @@
 namespace aphotic::cli {
 
 enum ExitStatus : int {
-    kDone = 0,        // it did what was asked
-    kAnswerIsNo = 1,  // it ran, and the answer is no: validation out of bounds
+    kDone = 0,        // the command succeeded
+    kAnswerIsNo = 1,  // it ran, with a negative result: validation out of bounds
     kBadInput = 2,    // the command line or an input file is wrong
     kRunFailed = 3,   // POV-Ray or the file system failed
 };

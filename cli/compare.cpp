@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic compare A B: how far image A is from the reference B, channel by channel; and how A shows
-// patches of known colour.
+// aphotic compare A B: the difference of image A from the reference B, channel by channel; and the
+// accuracy of patches of known colour in A.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
@@ -26,7 +26,7 @@ namespace {
 
 struct CompareCommandOptions {
     ComparisonRequest request;
-    std::string scale;    // as the user gave it
+    std::string scale;    // as entered by the user
     std::string patches;  // a file
     std::string encoding = "linear";
     std::string output;
@@ -36,10 +36,10 @@ struct CompareCommandOptions {
 
 struct Compared {
     std::string image;
-    std::optional<ComparedImages> images{};  // none: without a reference
+    std::optional<ComparedImages> images{};  // empty without a reference
     std::optional<PatchScores> patches{};
     double bound = 0.0;
-    std::string scale;  // "image", "per-channel", or none
+    std::string scale;  // "image", "per-channel", or empty
 };
 
 nlohmann::ordered_json images_json(const Compared& compared) {

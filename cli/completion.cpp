@@ -24,15 +24,15 @@ struct Taken {
 };
 
 struct Offer {
-    std::string letter{};  // empty: none
+    std::string letter{};  // empty if there is none
     std::string name;
-    std::vector<std::string> spellings;  // dashes and all
+    std::vector<std::string> spellings;  // including dashes
     std::string words;
     Taken taken;
 };
 
 struct Offers {
-    std::string command;  // empty: before any
+    std::string command;  // empty: before any command
     std::string words;
     std::vector<Offer> options{};
     std::vector<Taken> arguments{};
@@ -62,7 +62,7 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
                                  ? option.get_name(true)
                                  : option.get_type_name();
     const std::size_t open = type.find('{');
-    const bool is_word_or_file = type.ends_with("|FILE");  // the rig's own words are not known here
+    const bool is_word_or_file = type.ends_with("|FILE");  // the rig's names are not known here
     if (type == "COMMAND") {
         taken.kind = Taken::Kind::Words;
         taken.words = command_names(*app.get_parent());
@@ -113,7 +113,7 @@ Offers offers_of(const CLI::App& app) {
     return offers;
 }
 
-// The parser's own first, then its commands'.
+// The parser's own options first, then its commands'.
 std::vector<Offers> all_offers(const CLI::App& app) {
     std::vector<Offers> all{offers_of(app)};
     for (const CLI::App* command : app.get_subcommands({})) all.push_back(offers_of(*command));
@@ -129,11 +129,11 @@ std::string escaped(std::string_view text, std::string_view marks) {
     return result;
 }
 
-// How a shell is told the possible values.
+// A shell's syntax for the possible values.
 struct ShellActions {
-    std::string_view words;      // with their place
+    std::string_view words;      // with a placeholder
     std::string_view files;      // of any kind
-    std::string_view extension;  // files of it, with its place
+    std::string_view extension;  // files of an extension, with a placeholder
     std::string_view folders;
     std::string_view text;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Completion for shells: a script made of the parser's own tables, so that it offers what the
-// command takes. Of an option's spellings it offers the one of --help, and after any of them its
-// words, its files by their extension or its folders.
+// Completion for shells: a script generated from the parser's own tables, so that it offers what
+// the command accepts. Of an option's spellings it offers the one in --help, and after any of them
+// its words, its files by extension or its folders.
 #pragma once
 
 #include <CLI/CLI.hpp>

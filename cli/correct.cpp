@@ -35,7 +35,7 @@ namespace aphotic::cli {
 namespace {
 
 struct CorrectCommandOptions {
-    std::string baseline;  // empty: by the model
+    std::string baseline;  // empty: by the lamp model
     SurveyInput input;
     std::string map;
     bool no_veil = false;
@@ -56,7 +56,7 @@ void print_scale(const LightAt& light) {
         light.size.height_px);
 }
 
-// One number if all channels have it, as for a mono camera.
+// One number if all channels have the same, as for a mono camera.
 std::string gain_words(const PerChannel& gain) {
     if (gain[0] == gain[1] && gain[1] == gain[2]) return fmt::format("{:.6g}", gain[0]);
     return fmt::format("{:.6g} (R), {:.6g} (G), {:.6g} (B)", gain[0], gain[1], gain[2]);
@@ -111,13 +111,13 @@ void print_baseline(const CorrectionReport& report, const Survey& survey) {
 // time.
 void keep_memory() {
 #ifdef __GLIBC__
-    ::mallopt(M_ARENA_MAX, 1);  // those of threads hold no large planes
+    ::mallopt(M_ARENA_MAX, 1);  // the arenas of threads hold no large planes
     ::mallopt(M_MMAP_MAX, 0);
     ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif
 }
 
-// At the highest altitude, where the model leaves out most.
+// At the highest altitude, where the model error is largest.
 std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options,
                                             Rig rig,
                                             const Survey& survey) {
@@ -133,7 +133,7 @@ void expect_size_of(const LightAt& light, CameraNumbers& camera) {
     camera.expected->as = "like the map";
 }
 
-// What is asked for, and of water that scatters what the model leaves out.
+// The request, and for water that scatters the model error.
 struct Task {
     Survey survey;
     std::optional<ManifestModel> model{};
@@ -207,7 +207,7 @@ void take_noise(CorrectCommandOptions& options, const Readout& readout) {
     if (!options.correction.read_noise) options.correction.read_noise = dark_noise_dn(readout);
 }
 
-// Read before anything is corrected, so that a fault in it costs nothing.
+// Read before anything is corrected, so that an error in it costs no time.
 struct IfdoTask {
     Ifdo of_raw;
     std::filesystem::path place;
@@ -239,7 +239,7 @@ ExitStatus correct(CorrectCommandOptions options) {
         options.correction.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     }
     keep_memory();
-    set_exr_threads(0);  // the images themselves are spread over the threads
+    set_exr_threads(0);  // the threads work on different images
     if (options.input.navigation.source.empty() && !options.input.rig.empty())
         options.input.navigation.source = options.ifdo;
     const std::optional<IfdoTask> task = ifdo_task(options);
@@ -259,7 +259,7 @@ ExitStatus correct(CorrectCommandOptions options) {
         print_report(report, survey, correction.run.folder, correction.report);
         print_model_error(model);
     }
-    // With a share it would cover images that are missing here.
+    // A share lacks some of the images that it would have to cover.
     if (task && correction.share.is_whole()) write_ifdo(*task, options, survey, report);
     const std::size_t skipped = report.run->skipped.size();
     const std::size_t images = report.run->corrected + report.run->kept + skipped;

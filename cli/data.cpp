@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic data [NAME]: list the built-in tables, or show, plot or hand on one of them, or check
-// a table of the user's own, or make tables of POV-Ray's splines.
+// aphotic data [NAME]: list the built-in tables, show, plot or export one of them, check a user's
+// table, or convert POV-Ray's splines to tables.
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
@@ -35,15 +35,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kIndexStep_nm = 2.0;                 // of a plotted refractive index
-constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // what cameras and lamps can use of it
+constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // the range used by cameras and lamps
 constexpr double kPlotSalinity_psu = 35.0;
 constexpr double kPlotTemperature_c = 10.0;
 
-// In this order; others follow in their own.
+// In this order; others follow in their own order.
 constexpr std::string_view kMetadataKeys =
     "title,role,quantity,unit,kind,form,formula,range,source,obtained,uncertainty,terms";
 
-// Of --from-spline.
+// Options of --from-spline.
 struct SplineOptions {
     std::string file;
     std::string folder = ".";
@@ -62,7 +62,7 @@ struct DataCommandOptions {
 
 struct Entry {
     Table table;
-    std::string role;  // of a user's table: all that it could play
+    std::string role;  // of a user's table: all possible roles
     WavelengthRange range;
 };
 
@@ -199,7 +199,7 @@ Plot curve_plot(const Table& table, CurveRole role) {
     return plot;
 }
 
-// n over wavelength, from the formula that the coefficients stand for.
+// n over wavelength, from the formula with these coefficients.
 template <typename Index>
 Plot index_plot(const Entry& entry, const std::string& title, const Index& index) {
     PlotCurve curve;
@@ -263,7 +263,7 @@ void refuse_to_overwrite(const std::vector<NewTable>& tables) {
     }
 }
 
-// Every file is complete before the first is renamed.
+// All files are complete before the first is renamed.
 void write_all(const std::vector<NewTable>& tables) {
     std::list<AtomicFile> files;
     for (const NewTable& table : tables) {

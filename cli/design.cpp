@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic design RIG --vary KEY,... -o DIR: better places for a rig's strobes, and what they gain.
+// aphotic design RIG --vary KEY,... -o DIR: better places for a rig's strobes, and the gain.
 #include "lightmap/design.h"
 
 #include "base/degrees.h"
@@ -98,7 +98,7 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
     const Rig rig = text.rig();
     check_plausible(rig, options.rig, options.strict);
     DesignRequest request = request_of(options, rig);
-    naming(options.rig, [&] {  // refused before there is a folder
+    naming(options.rig, [&] {  // refused before a folder is made
         return DesignSpace(text, request.freedom, corner_poses(request.envelope));
     });
     const FolderLock lock = claim_folder(options.folder);

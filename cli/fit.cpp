@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE --depth-map DIR  -o DIR: the rig
-// that explains a survey, with errors.
+// that best fits a survey, with errors.
 #include "survey/fit/fit.h"
 #include "base/atomic_file.h"
 #include "base/degrees.h"
@@ -78,7 +78,7 @@ bool is_given(const CLI::App& app, const std::string& option) {
     return app.count(option) > 0;
 }
 
-// Options for images, meaningless for maps; everything that --nav needs is checked with it.
+// Options for images, meaningless for maps; options that --nav requires are checked with it.
 constexpr std::array kOfImages{"--nav",
                                "--depth-map",
                                "--relief",
@@ -97,7 +97,7 @@ void require_use(const CLI::App& app) {
     }
 }
 
-// The starting rig is kept.
+// The initial rig is kept.
 void require_other_rig(const FitCommandOptions& options) {
     std::error_code error;
     if (!std::filesystem::equivalent(options.input.rig, options.folder / kFittedRig, error)) return;
@@ -139,7 +139,7 @@ std::map<std::string, double> priors_in(const std::vector<std::string>& given) {
     return priors;
 }
 
-// The strongest: all are in fit.json.
+// The strongest ones; all are in fit.json.
 void print_confounded(const std::vector<Confounded>& pairs) {
     constexpr std::size_t kShown = 6;
     const std::size_t shown = pairs.size() <= kShown + 1 ? pairs.size() : kShown;

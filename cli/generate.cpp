@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic generate RIG -o DIR: the scenes alone, for plain POV-Ray; `aphotic integrate DIR` takes
-// it from there.
+// aphotic generate RIG -o DIR: the scenes alone, for plain POV-Ray; `aphotic integrate DIR` then
+// makes the images.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/words.h"
@@ -44,7 +44,7 @@ ExitStatus write_quick_look(const GenerateCommandOptions& options) {
 struct Generated {
     Manifest manifest;
     std::string folder;
-    fs::path own_scene;  // the user's, or empty
+    fs::path own_scene;  // the user's; may be empty
 };
 
 nlohmann::ordered_json to_json(const Generated& made) {

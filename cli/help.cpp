@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kColumns = 80;
 constexpr std::size_t kNameColumns = 26;
 
-// Wraps lines at blanks, and keeps the text's own breaks.
+// Wraps lines at blanks, and keeps existing line breaks.
 std::string wrapped(const std::string& text, std::size_t columns) {
     std::string result;
     std::istringstream paragraphs(text);
@@ -32,7 +32,8 @@ std::string wrapped(const std::string& text, std::size_t columns) {
     return result;
 }
 
-// A type's name is such as "INT:1 to 48" or "TEXT:{tiff,png,exr}": the kind, and what is allowed.
+// A type's name, such as "INT:1 to 48" or "TEXT:{tiff,png,exr}", consists of the kind and the
+// allowed values.
 struct OptionType {
     explicit OptionType(const std::string& name)
         : word(name.substr(0, name.find(':'))),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How --help looks: an option, what it takes, and what it does, in 80 columns.
+// The format of --help: an option, its value and its effect, in 80 columns.
 //
 //   --tolerance E           Largest relative error of any pixel's signal [0 to 1; default: 0.001]
 //
-// An option's first long name is shown; the others are old spellings that go on working.
+// An option's first long name is shown; the others are old spellings that still work.
 #pragma once
 
 #include <CLI/CLI.hpp>

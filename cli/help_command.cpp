@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic help [COMMAND]: what --help prints, of the command.
+// aphotic help [COMMAND]: prints the --help of the command.
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/option_words.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic init RIG.toml: a rig to change, from a template.
+// aphotic init RIG.toml: an editable rig, from a template.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/words.h"
@@ -31,7 +31,7 @@ struct InitOptions {
     bool json = false;
 };
 
-// There with the same text is as good.
+// An existing file with the same text is accepted.
 void require_new(const fs::path& file, std::string_view text) {
     if (fs::exists(file) && read_text_file(file) != text)
         throw InputError("{}: exists; allowed: a new file", file.string());
@@ -64,7 +64,7 @@ std::string titled(const std::string& rig, const fs::path& file) {
     return text.text();
 }
 
-// What the rig names is there before the rig.
+// Files that the rig names are written before the rig.
 ExitStatus begin_rig(const InitOptions& options) {
     const RigTemplate chosen = rig_template(options.like);
     const fs::path file = options.file;

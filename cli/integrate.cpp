@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic integrate DIR: the frames of a folder to images, wherever they were rendered; with --rig,
-// to those of a rig of other water, lamps, materials or sensor.
+// aphotic integrate DIR: makes images from the frames of a folder, wherever they were rendered;
+// with --rig, those of a rig with other water, lamps, materials or sensor.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/work_folder.h"
@@ -46,7 +46,7 @@ fs::path images_folder(const IntegrateCommandOptions& options) {
     return fs::path(options.folder) / ("as-" + fs::path(options.rig_file).stem().string());
 }
 
-// Images of other frames, of another rig, or traced have the same names.
+// Images of other frames, of another rig, or by the tracer have the same names.
 void require_own_folder(const fs::path& images, const IntegrateCommandOptions& options) {
     std::error_code none;
     const bool is_of_frames = fs::equivalent(images, options.folder, none);
@@ -76,7 +76,7 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
     return manifest;
 }
 
-// The provenance of the image, for whoever finds it later.
+// The provenance of the image, kept with it.
 Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest) {
     Json account{{"rig_title", manifest.rig_title},
                  {"rig_sha256", manifest.rig_sha256},
@@ -102,10 +102,10 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
         const FolderLock lock(options.folder, FolderUse::Write);
         join_frames(options.folder);
     }
-    // Unusable frames, and images without disk space, leave no folder behind.
+    // No folder is left if frames are unusable or disk space is insufficient.
     require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
-    Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
+    Manifest manifest = manifest_of(options);  // read again under the lock
     if (!options.rig_file.empty()) {
         manifest.veil =
             write_veil_of_signals(images, read_rig_as_set(options.rig_file), manifest, all_cores());

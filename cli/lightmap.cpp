@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, at once; with
-// --altitude 1:4:0.1 -o DIR a map at each altitude, for other programs.
+// aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, without
+// rendering; with --altitude 1:4:0.1 -o DIR a map at each altitude, for other programs.
 #include "cli/terminal.h"
 #include "lightmap/lightmap_file.h"
 
@@ -40,7 +40,7 @@ struct LightmapCommandOptions {
     std::string rig_file;
     std::string output;              // a file, or a folder of maps by altitude
     std::string altitudes;           // empty: the rig's own
-    std::vector<double> altitude_m;  // what it says
+    std::vector<double> altitude_m;  // parsed from altitudes
     std::optional<double> pitch_deg;
     std::optional<double> roll_deg;
     std::optional<double> water_multiple;
@@ -209,7 +209,7 @@ void require_room_for_maps(const LightmapCommandOptions& options,
                            std::size_t maps,
                            const fs::path& folder) {
     const std::size_t parts = parts_of(options, rig).size();
-    // As many planes again, of the whole and of each part.
+    // The same number of planes again, of the whole and of each part.
     const bool has_veil = rig.water.scatters() && options.map.has_veil;
     require_room(lightmap_needs({.maps = maps,
                                  .width_px = rig.camera.width_px,
@@ -286,7 +286,7 @@ void print(const MadeMaps& made) {
     say("  {} to {}\n", made.maps.front().file, fs::path(highest.file).filename().string());
 }
 
-// Nothing is written before all of them are known to be possible.
+// Nothing is written until all maps are known to be possible.
 ExitStatus make_maps(const LightmapCommandOptions& options, const Rig& rig) {
     MadeMaps made{.folder = options.output, .maps = {}};
     const std::vector<std::string> names = map_names(options.altitude_m);
@@ -308,7 +308,7 @@ ExitStatus make_maps(const LightmapCommandOptions& options, const Rig& rig) {
         for (std::size_t i = 0; i < made.maps.size(); ++i) {
             line.show("mapping", static_cast<double>(i) / static_cast<double>(made.maps.size()));
             write_map(made.maps[i]);
-            made.maps[i].written.map.samples = {};  // hundreds of maps are too many to keep
+            made.maps[i].written.map.samples = {};  // hundreds of maps would not fit in memory
         }
     });
     show(made, options.json);
@@ -354,7 +354,7 @@ void print(const MadeOplab& made) {
 ExitStatus export_maps(const LightmapCommandOptions& options, const Rig& rig) {
     MadeOplab made{.options = options, .rig = rig};
     naming(options.rig_file, [&] {
-        static_cast<void>(AltitudeFitter{options.altitude_m});  // or it says why not
+        static_cast<void>(AltitudeFitter{options.altitude_m});  // throws if not even
         require_over_floor(rig, rig_at(rig, options.altitude_m.front()).sled);
         made.model = model_of(options, rig_at(rig, options.altitude_m.back()));
         require_room(oplab_needs(rig.camera.width_px, rig.camera.height_px),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
+// The `aphotic` command: a table of subcommands, and the exit status for each kind of failure.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/interruption.h"
@@ -59,9 +59,9 @@ constexpr std::array kCommands{&kInit,
                                &kData,
                                &kHelp};
 
-// keeps: what a signal leaves of the work.
+// keeps: the work that remains after a signal.
 ExitStatus run(const Action& action, const std::string& keeps) {
-    // On a terminal a line of progress may stand there.
+    // On a terminal there may be a line of progress.
     const char* const wipe = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
     const aphotic::LastWords words(fmt::format("{}aphotic: interrupted; {}\n", wipe, keeps));
     try {
@@ -81,7 +81,7 @@ ExitStatus run(const Action& action, const std::string& keeps) {
         warn("out of memory");
         return kRunFailed;
     } catch (const std::exception& error) {
-        // The standard library's own message, around a name that may hold anything.
+        // The standard library's own message, with a name of arbitrary characters.
         warn_text(aphotic::shown_text(error.what()));
         return kRunFailed;
     }
@@ -117,7 +117,7 @@ void add_completion(CLI::App& app, Action& chosen) {
         ->trigger_on_parse();
 }
 
-// Options keep their hyphens; what follows them, and all else, is as a shell takes it.
+// Options keep their hyphens; their values, and all other words, are quoted for a shell.
 std::string typed(std::string_view argument) {
     const std::size_t hyphens = std::min(argument.find_first_not_of('-'), argument.size());
     const std::string_view rest = argument.substr(hyphens);
@@ -126,7 +126,7 @@ std::string typed(std::string_view argument) {
 }
 
 aphotic::PageOrigin page_origin(int argc, char** argv) {
-    constexpr std::size_t kMostCharacters = 2000;  // of a shell's thousand images the first
+    constexpr std::size_t kMostCharacters = 2000;  // cuts a list of a thousand images
     std::string command = "aphotic";
     for (int i = 1; i < argc && command.size() < kMostCharacters; ++i)
         command += " " + typed(argv[i]);
@@ -153,11 +153,11 @@ std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
 
 int main(int argc, char** argv) {
     // A file over the size limit (ulimit -f) should be an error with its name, and the end of
-    // POV-Ray must be seen, whatever signal settings we inherited.
+    // POV-Ray must be detected, whatever signal settings we inherited.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL);
 #ifdef __GLIBC__
-    // Large buffers are kept for the next piece of work, since fetching them again page by page
+    // Large buffers are kept for the next piece of work, since allocating them again page by page
     // takes a third of a fit's time.
     mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max());
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());

@@ -9,7 +9,7 @@
 namespace aphotic::cli {
 namespace {
 
-// A text of ours as roff shows it, in one line.
+// A text escaped for roff, in one line.
 std::string roff(const std::string& text) {
     std::string result;
     for (const char c : text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manual page, written of the parser's own tables as completion is: each command with its
+// The manual page, generated like completion from the parser's own tables: each command with its
 // arguments, options, defaults and limits, in roff, for man(1).
 #pragma once
 

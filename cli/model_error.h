@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The model error estimate (validation/model_check.h) of the commands that make images and maps:
-// printed beside the promise, never added to it, and refused where it is over --model-tolerance.
+// printed beside the promise, never added to it, and refused if it exceeds --model-tolerance.
 #pragma once
 
 #include "spectral/manifest.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic observe IMAGES... --nav FILE -o MAP.exr: the images of one altitude averaged into the
-// pattern of light that they share.
+// aphotic observe IMAGES... --nav FILE -o MAP.exr: averages the images of one altitude into their
+// common pattern of light.
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
@@ -54,7 +54,7 @@ void print_observation(const Observation& observation, const std::string& map_fi
         say("left out: {}: {}\n", one.image, words_of(one));
 }
 
-// The camera's rays, along which a mesh is seen.
+// The camera's rays, for the view of a mesh.
 void look_at_mesh(Survey& survey, std::optional<Rig> rig) {
     if (!rig) throw InputError("--relief needs --rig, which has the camera's rays");
     if (const auto images = usual_size(survey.files, survey.camera))

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array kWritten{"output", "preview", "report", "plot", "quick-look"};
 
 bool is_written(const CLI::Option& option) {
-    if (option.get_items_expected_max() == 0) return false;  // a flag names nothing
+    if (option.get_items_expected_max() == 0) return false;  // a flag has no value
     return std::ranges::any_of(kWritten,
                                [&](const char* name) { return option.check_lname(name); });
 }
@@ -32,7 +32,7 @@ bool takes_place_of(const fs::path& file, const fs::path& named) {
     return inner.starts_with(outer);
 }
 
-// The parser itself reports anything that is not a number.
+// The parser itself reports values that are not numbers.
 std::optional<double> number_in(const std::string& text) {
     double number = 0.0;
     return CLI::detail::lexical_cast(text, number) ? std::optional(number) : std::nullopt;
@@ -67,8 +67,7 @@ void require_extension(CLI::Option& option, const std::string& extension) {
         "");
 }
 
-// "" is a script's unset variable: no folder of that name can be meant, least of all the current
-// one.
+// "" comes from a script's unset variable: it cannot mean a folder, least of all the current one.
 void refuse_no_name(CLI::Option& option) {
     option.check(
         [](const std::string& text) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a parser of command lines does not see: numbers out of their range or that are none, words
-// that stand for something else, and files that would be written in the place of what they are made
-// from or under the name of another format.
+// Checks beyond those of a command-line parser: numbers out of range and texts that are not
+// numbers, words that stand for values, and output files that would replace their input or have
+// another format's extension.
 #pragma once
 
 #include "base/error.h"
@@ -24,7 +24,7 @@ namespace aphotic::cli {
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
 
-// One of these words, for its value.
+// One of these words, converted to its value.
 template <class Value>
 [[nodiscard]] CLI::Validator word_of(const std::map<std::string, Value>& words) {
     return {[words](std::string& text) {
@@ -61,7 +61,7 @@ CLI::Option* add_read(CLI::App& app, const std::string& name, Value& value, cons
     return add_option_function<std::string>(app, name, take)->check(refused_by(read));
 }
 
-// For a reader that returns nothing if the text is invalid.
+// For a reader that returns an empty value if the text is invalid.
 template <typename Read>
 auto read_by(const Read& read, const std::string& allowed) {
     return [read, allowed](const std::string& text) {
@@ -71,12 +71,12 @@ auto read_by(const Read& read, const std::string& allowed) {
     };
 }
 
-// Every option of the command that takes a number refuses NaN, which no range does; one that names
-// a file or folder refuses the empty name; and one that writes a file of one format, whose type
-// name is such as FILE.exr, refuses other extensions.
+// Options with a number refuse NaN, which no range does; those with a file or folder refuse the
+// empty name; and those that write a file of one format, with a type name such as FILE.exr, refuse
+// other extensions.
 void add_common_checks(CLI::App& command);
 
-// After parsing: the files and folders that the options name for output.
+// After parsing: the output files and folders that the options name.
 [[nodiscard]] std::vector<std::filesystem::path> written_places(const CLI::App& command);
 
 // After parsing: throws InputError if an output file is also named by another option, or lies in a

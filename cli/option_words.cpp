@@ -15,7 +15,7 @@ const toml::table& all_words() {
     return kWords;
 }
 
-// The command's own, else those of all.
+// The command's own words, else the common ones.
 const toml::table& words_of(const CLI::App& command, const std::string& name) {
     for (const std::string& place : {command.get_name(), std::string("shared")}) {
         const toml::node* of_place = all_words().get(place);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The words of --help are text, not code: cli/options.toml has the names, what follows them and
-// what they mean, of each command and of all. Code says what an option sets and what it allows.
+// The words of --help are text, not code: cli/options.toml has the names, values and meanings of
+// the options of each command, and of the common ones. Code determines what an option sets and
+// allows.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -29,13 +30,13 @@ namespace cli {
 // Sets the command's summary, its heading in the list, and its footer.
 void describe(CLI::App& command);
 
-// What an interrupted run of it leaves, and how to go on.
+// The state left by an interrupted run of it, and how to continue.
 [[nodiscard]] std::string what_is_kept(const CLI::App& command);
 
 // All spellings of an option or argument of the command, by the first long one: "--output".
 [[nodiscard]] std::string spellings_of(const CLI::App& command, const std::string& name);
 
-// Sets what the option takes, its description, and its default.
+// Sets the option's value name, description and default.
 CLI::Option* described(const CLI::App& command, const std::string& name, CLI::Option* option);
 
 template <typename Value>

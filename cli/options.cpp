@@ -15,7 +15,7 @@ constexpr const char* kWavelengthOptions = "Wavelengths";
 constexpr const char* kSceneOptions = "A POV-Ray scene of your own";
 constexpr const char* kPovRayOptions = "POV-Ray";
 
-int most_cores = 0;  // 0: --jobs was not said
+int most_cores = 0;  // 0: --jobs was not given
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Options that several commands share, each declared once. An option's first long name is the one
-// that --help shows; the others are those of version 0.1.
+// in --help; the others are those of version 0.1.
 #pragma once
 
 #include "base/number.h"
@@ -28,11 +28,12 @@ inline constexpr double kLeastAltitude_m = 0.001;
 inline constexpr double kMostAltitude_m = 10000.0;
 inline constexpr double kMostTilt_deg = 89.9;
 
-// Threads that the command may use: one per core, or fewer by --jobs once that is parsed.
+// The number of threads that the command may use: one per core, or fewer by --jobs once that is
+// parsed.
 [[nodiscard]] int all_cores();
 void take_no_more_cores_than(int jobs);
 
-// Options added during its life are listed under this heading of --help.
+// Options added during its lifetime are listed under this heading of --help.
 class OptionGroup {
   public:
     OptionGroup(CLI::App& app, const std::string& name) : app_(app) {
@@ -69,12 +70,12 @@ CLI::Option* add_share(CLI::App& app, const std::string& name, WorkShare& share)
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
 
-// What makes the veil of water that scatters.
+// The method for the veil of water that scatters.
 inline constexpr std::array kVeilMakers{"quadrature", "povray"};
 
 struct PlanningOptions {
     std::string rig_file;
-    PlanRequest plan{};  // but for what request_of() in planning.cpp makes of the others
+    PlanRequest plan{};  // except fields that request_of() of planning.cpp sets
     std::vector<double> paths_m;
     std::vector<int> emitter_lamps;
     bool renders = false;  // otherwise a scene that the rig names is ignored
@@ -83,7 +84,7 @@ struct PlanningOptions {
     bool unchecked = false;
     double clock = 0.0;
     std::optional<Sled> sled{};           // instead of the rig's
-    std::vector<std::string> declared{};  // numbers that the probe is told, NAME=NUMBER
+    std::vector<std::string> declared{};  // numbers for the probe, NAME=NUMBER
     std::string veil{kVeilMakers.front()};
     int veil_samples = kVeilSamples;
     std::vector<std::string> povray_ini;
@@ -94,13 +95,13 @@ struct PlanningOptions {
     bool strict = false;
 };
 
-// Which POV-Ray, and how long it may be silent.
+// The POV-Ray executable, and the longest time without output.
 void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s);
 
 // The rig and its wavelengths, without POV-Ray.
 void add_wavelength_options(CLI::App& app, PlanningOptions& options);
 
-// These, and how POV-Ray is to render them.
+// These, and POV-Ray's settings for rendering.
 void add_planning_options(CLI::App& app, PlanningOptions& options);
 
 }  // namespace aphotic::cli

@@ -88,8 +88,8 @@ Integration integrate_folder(const fs::path& folder,
 
 namespace {
 
-// Of each channel's brightest signal: from which on 16-bit frames have their digits, and the
-// promise is of the pixel's own signal.
+// Relative to each channel's brightest signal: the level from which 16-bit frames have full
+// precision, and the promise is relative to the pixel's own signal.
 double share_with_digits(const Integration& integration) {
     double share = 0.0;
     for (std::size_t c = 0; c < kChannels; ++c) {

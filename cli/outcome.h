@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a command made. Each result is a struct with to_json(), for programs, and print(), for
-// people.
+// The results of commands. Each is a struct with to_json(), for programs, and print(), for people.
 #pragma once
 
 #include "base/json_text.h"
@@ -52,7 +51,7 @@ struct Integration {
     double seconds = 0.0;
 };
 
-// Integrates the frames of `folder` into `images`, the same folder or another, which gets the
+// Integrates the frames of `folder` into `images`, the same folder or another; another receives the
 // signals only. Writes image.exr, spectral.exr and preview.png.
 [[nodiscard]] Integration integrate_folder(const std::filesystem::path& folder,
                                            const Manifest& manifest,
@@ -65,7 +64,7 @@ void print(const Integration& integration);
 // user's scene voids it; no_promise in the JSON then gives the reason.
 void put_promises(nlohmann::ordered_json& json, const Manifest& manifest);
 
-// Why there is no error bound, for people.
+// The reason for a missing error bound, for people.
 void print_no_promise(const std::vector<std::string>& reasons);
 
 // A line about the veil, if POV-Ray renders it.

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kPovrayTemporary = "/tmp";  // POV-Ray 3.7 asks for no other
+const fs::path kPovrayTemporary = "/tmp";  // POV-Ray 3.7 uses no other
 
 std::uint64_t parsed_bytes(const SceneSet& scenes) {
     std::uint64_t bytes = scenes.camera ? bytes_of_rays(*scenes.camera) : 0;
@@ -30,8 +30,8 @@ std::uint64_t parsed_bytes(const SceneSet& scenes) {
 }
 
 std::uint64_t scenes_bytes(const SceneSet& scenes) {
-    constexpr std::uint64_t kDiskBlock_bytes = 4096;   // what the least of files takes
-    constexpr std::uint64_t kWavelength_bytes = 1024;  // of the manifest, twice as long as seen
+    constexpr std::uint64_t kDiskBlock_bytes = 4096;   // the size of the smallest file
+    constexpr std::uint64_t kWavelength_bytes = 1024;  // of the manifest, twice the observed size
     std::uint64_t bytes = scenes.ini.size() + 3 * kDiskBlock_bytes +
                           kWavelength_bytes * scenes.manifest.wavelengths.size();
     for (const FrameScene& scene : scenes.scenes) bytes += scene.sdl.size() + kDiskBlock_bytes;
@@ -40,7 +40,7 @@ std::uint64_t scenes_bytes(const SceneSet& scenes) {
     return bytes;
 }
 
-// What the folder's own scenes include exists, complete; scenes have one length.
+// The folder's scenes have their includes, complete; scenes all have the same length.
 std::uint64_t parsed_bytes(const fs::path& folder) {
     std::uint64_t includes = 0;
     std::uint64_t longest = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the folder that a command writes to has room for all that may come, and the machine
-// memory for the POV-Rays that it runs (scene_gen/resource_needs.h).
+// Whether the output folder has room for a command's files, and the machine memory for its POV-Ray
+// processes (scene_gen/resource_needs.h).
 #pragma once
 
 #include "base/work_folder.h"
@@ -17,28 +17,28 @@ namespace aphotic::cli {
 
 void add_needs_option(CLI::App& app, bool& ignore_needs);
 
-// Throws RunError, with what is needed and what is free, unless it is to be ignored.
+// Throws RunError, with the required and the free space, unless the check is to be ignored.
 void require_room(const ResourceNeeds& needs,
                   const std::filesystem::path& folder,
                   bool ignore_needs);
 
-// For a render of these scenes into the folder. Frames that an earlier run left there for the same
-// scenes are kept, and need no more room. Without a folder, there are none.
+// For a render of these scenes into the folder. Frames of an earlier run for the same scenes are
+// kept, and need no more room. Without a folder there are no such frames.
 [[nodiscard]] ResourceNeeds needs_of(const SceneSet& scenes,
                                      const std::filesystem::path& folder,
                                      int jobs);
 
-// As many of the jobs as fit in memory, with a warning if that is fewer.
+// The number of jobs that fit in memory, with a warning if it is smaller.
 [[nodiscard]] int jobs_that_fit(const ResourceNeeds& needs, int jobs);
 
-// Before a render: checks that the folder may take these scenes, and has room for the results.
+// Before a render: checks that the folder may receive these scenes, and has room for the results.
 // Returns the number of jobs that fit.
 [[nodiscard]] int require_place_and_room(const SceneSet& scenes,
                                          const std::filesystem::path& folder,
                                          int jobs,
                                          bool ignore_needs);
 
-// For a share of the frames of scenes in the folder, into the share's own.
+// For a share of the frames of the folder's scenes, into the share's own folder.
 [[nodiscard]] ResourceNeeds needs_of_share(const std::filesystem::path& folder,
                                            WorkShare share,
                                            int jobs);

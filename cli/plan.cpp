@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
+// aphotic plan RIG: the resources and the promised error of a render, before anything is rendered.
 #include "base/atomic_file.h"
 #include "base/words.h"
 #include "cli/command.h"
@@ -34,7 +34,7 @@ struct PlanCommandOptions {
     bool json = false;
 };
 
-// Behind a port: how far the wavelengths lie apart, and the frames that this costs.
+// Behind a port: the shift between wavelengths, and the additional frames that it requires.
 struct PortCost {
     double spread_px = 0.0;
     double shared_px = 0.0;  // the most within one frame
@@ -47,7 +47,7 @@ PortCost port_cost(const PlannedRender& planned) {
         return corner_shift_px(planned.rig, a.lambda_nm, b.lambda_nm);
     };
     PortCost cost{.spread_px = shift_px(all.front(), all.back())};
-    // In a frame the last is the farthest from the first.
+    // In a frame, the last wavelength is the farthest from the first.
     const PlannedWavelength* first = &all.front();
     for (const PlannedWavelength& w : all) {
         if (w.frame != first->frame) first = &w;
@@ -71,7 +71,7 @@ Json wavelengths_of(const Manifest& manifest) {
     return all;
 }
 
-// What a render into an empty folder would need, with as many frames at a time as there are cores.
+// The needs of a render into an empty folder, with as many frames at a time as there are cores.
 struct PlannedNeeds {
     ResourceNeeds render;
     FileSizes files;
@@ -357,9 +357,8 @@ Plot error_panel(const Rig& rig, const RenderPlan& plan) {
     return panel;
 }
 
-// The light that each material can send, over its shortest and its longest path, with the
-// wavelengths marked; and below it the error of each channel over path length, for the material
-// with the largest.
+// The light from each material over its shortest and its longest path, with the wavelengths marked;
+// below it, the error of each channel over path length, for the material with the largest error.
 void plot_plan(const Rig& rig, const RenderPlan& plan, const std::filesystem::path& file) {
     write_plots(std::array{light_panel(rig, plan), error_panel(rig, plan)}, file);
 }

@@ -23,7 +23,7 @@ namespace aphotic::cli {
 namespace {
 
 // POV-Ray settings that change only its speed. Others would change a frame's contents: Quality
-// below 9 omits the water, gamma and format are the integrator's.
+// below 9 omits the water; gamma and format are fixed by the integrator.
 constexpr std::string_view kSpeedKeys =
     "Bounding, Bounding_Method, Bounding_Threshold, BSP_BaseAccessCost, BSP_ChildAccessCost, "
     "BSP_IsectCost, BSP_MaxDepth, BSP_MissChance, Light_Buffer, Remove_Bounds, Render_Block_Size, "

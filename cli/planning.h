@@ -20,17 +20,17 @@ namespace aphotic::cli {
 struct PlannedRender {
     Rig rig;
     RenderPlan plan;
-    double probe_s = 0.0;                  // that the probe of the user's own scene took
+    double probe_s = 0.0;                  // of the probe of the user's scene
     std::optional<ManifestModel> model{};  // of water that scatters
 };
 
-// Reads the rig, probes the user's scene if there is one, plans, and estimates what the
-// model leaves out. Messages name the rig's file.
+// Reads the rig, probes the user's scene if there is one, plans, and estimates the model error.
+// Messages name the rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 
 [[nodiscard]] SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options);
 
-// The POV-Ray that the options name. If none works, the message also names the command that makes
+// The POV-Ray named by the options. If none works, the message also names the command that makes
 // the same images without it, except for a user's scene, which the tracer cannot read.
 [[nodiscard]] PovRay povray_for(const PlannedRender& planned,
                                 const PlanningOptions& options,

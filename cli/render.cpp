@@ -45,7 +45,7 @@ struct Rendered {
     std::size_t frames_rendered = 0;
     std::size_t frames_kept = 0;
     double povray_s = 0.0;
-    std::optional<double> probe_s{};  // of a scene of the user's own
+    std::optional<double> probe_s{};  // of the user's scene
 };
 
 nlohmann::ordered_json to_json(const Rendered& rendered) {
@@ -123,7 +123,7 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
     return kDone;
 }
 
-// A share takes the scenes as they are: planning options do not apply.
+// A share uses the existing scenes: planning options do not apply.
 void refuse_what_plans(const CLI::App& app) {
     constexpr std::string_view kOfShares =
         "RIG,--frames,--jobs,--json,--povray,--stall-timeout,--library-path,--ignore-needs";

@@ -33,7 +33,7 @@ RenderedImages images_in(const fs::path& folder,
     RenderedImages images;
     images.signals = read_signals(folder / "image.exr");
     for (const Strobe& strobe : rig.strobes) {
-        // The frames may be of another rig, which knows no such strobe.
+        // The frames may be of another rig, without such a strobe.
         const auto known = std::ranges::find(manifest.strobes, strobe.name, &ManifestStrobe::name);
         const ManifestStrobe lamps = known != manifest.strobes.end() ? *known : ManifestStrobe{};
         images.lamps.push_back({.across = lamps.lamps_across, .along = lamps.lamps_along});

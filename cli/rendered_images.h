@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A finished render's images, as the reference is to see them.
+// A finished render's images, prepared for comparison with the reference.
 #pragma once
 
 #include "spectral/light_family.h"

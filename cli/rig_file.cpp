@@ -22,7 +22,7 @@ namespace {
 
 std::vector<std::string> set_keys;
 
-// Commands that make images of a rig: others are given images, which fix the size.
+// For commands that make images of a rig; for others the given images determine the size.
 constexpr std::array<std::string_view, 8> kScaled{
     "render", "plan", "generate", "trace", "validate", "study", "lightmap", "survey"};
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rig that a command was given, with a warning of whatever is implausible about it
-// (rig/plausibility.h), in the form that warnings about surveys have. With --strict that is an
-// error, before anything is written.
+// The rig given to a command, with warnings about implausible values (rig/plausibility.h), in the
+// form of those about surveys. With --strict they are errors, before anything is written.
 //
-// --set KEY=VALUE sets keys of its text (rig/file/rig_text.h) before it is read, whatever the
-// command: to all that follows this is the rig, whose digest is of the text with them. --scale 0.1,
-// of the commands that make images of a rig, is --set camera.scale=0.1.
+// --set KEY=VALUE sets keys of its text (rig/file/rig_text.h) before it is read, for every command:
+// from then on this is the rig, and its digest is that of the changed text. --scale 0.1, of the
+// commands that make images of a rig, is --set camera.scale=0.1.
 #pragma once
 
 #include "rig/file/rig_text.h"
@@ -22,12 +21,12 @@ namespace aphotic::cli {
 
 void add_strict_option(CLI::App& app, bool& strict);
 
-// After the options' changes to the rig.
+// Called after the options' changes to the rig.
 void check_plausible(const Rig& rig, const std::string& file, bool strict);
 
-// For a command with an argument or an option for a rig; others are left as they are.
+// For a command with an argument or an option for a rig; others are not changed.
 void add_set_option(CLI::App& app);
-// The values of --set, in order; empty: none.
+// The values of --set, in order; may be empty.
 [[nodiscard]] std::optional<ManifestSettings> rig_settings();
 
 // The rig of the file, with these keys set. Throws InputError as read_rig does

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic study RIG -o DIR: a render by several choices of wavelengths, the time of each here and
-// its error against the reference.
+// aphotic study RIG -o DIR: a render with several choices of wavelengths, the time of each on this
+// machine and its error against the reference.
 #include "validation/study.h"
 
 #include "base/error.h"
@@ -114,7 +114,7 @@ void print_study(const Study& study, const fs::path& folder) {
     say("  {}/study.html, study.csv, study.json\n", folder.string());
 }
 
-// Of the setting that has most.
+// Of the setting with most frames.
 ResourceNeeds needs_of_renders(const Rig& rig,
                                const std::vector<PlannedSetting>& settings,
                                int cores) {

@@ -234,7 +234,7 @@ std::optional<ManifestModel> model_of(const SimulatedSurvey& survey,
     return model_error(rig, planning.rig_file, planning.model_tolerance);
 }
 
-// With an image of that kind each.
+// Each with an image of that kind.
 std::vector<SurveyPicture> pictures_of(const SimulatedSurvey& survey, const char* kind) {
     std::vector<SurveyPicture> pictures;
     for (const Leg& leg : survey.legs) {
@@ -250,7 +250,7 @@ bool are_there(const std::vector<SurveyPicture>& pictures) {
     return std::ranges::all_of(pictures, [](const auto& one) { return fs::exists(one.image); });
 }
 
-// None where no picture is missing that it would render.
+// Empty if no picture that it would render is missing.
 std::optional<PovRay> povray_for(const SurveyCommandOptions& options,
                                  const SimulatedSurvey& survey) {
     const bool has_light =

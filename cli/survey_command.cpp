@@ -39,8 +39,8 @@ std::string words_of(const ShotExposure& exposure) {
     return words;
 }
 
-constexpr double kMostOffset_m = 1000.0;  // as a rig has it
-constexpr double kMostClock_s = 1e10;     // a clock that began anew in 1970 is off by 2e9
+constexpr double kMostOffset_m = 1000.0;  // as in a rig
+constexpr double kMostClock_s = 1e10;     // a clock that restarted in 1970 is off by 2e9
 
 // "altitude_m=alt [m],roll_deg=phi"
 ColumnNames column_names(const std::string& text) {
@@ -279,7 +279,7 @@ Survey read_survey(const SurveyInput& input, const std::filesystem::path& output
                   .dropouts = input.dropouts};
     if (rig != nullptr) survey.camera = with_rig(survey.camera, rig->camera);
     survey.camera = with_reference(survey.camera, survey.files);
-    // A crop that fits no image is one mistake, reported once.
+    // A crop that fits no image is a single mistake, reported once.
     survey.camera = expecting_usual_size(survey.camera, survey.files);
     return survey;
 }
@@ -358,7 +358,7 @@ void print_relief(const Survey& survey) {
 }
 
 std::size_t AllowedSkips::of(std::size_t images) const {
-    // 0.07 of 100 is 7, which their product in doubles misses by rounding.
+    // 0.07 of 100 is 7, but the product in doubles differs by rounding.
     constexpr double kRounding = 1e-9;
     const double number_of =
         is_share ? number * static_cast<double>(images) * (1.0 + kRounding) : number;

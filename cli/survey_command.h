@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the commands on surveys have in common: what they take, and what the terminal is told
-// meanwhile.
+// The common parts of the survey commands: their options, and their messages to the terminal.
 #pragma once
 
 #include "cli/command.h"
@@ -20,8 +19,8 @@
 
 namespace aphotic::cli {
 
-// How many images may be skipped, and the command still end with 0: a number of them, or a share of
-// all that it was given. A script that works on ten thousand images need not stop for three.
+// The number of images that may be skipped with an exit status of 0, or their share of all given
+// images. A script for ten thousand images need not stop for three.
 //
 //   3        three images
 //   0.01     a hundredth of them, rounded down; so does 1%
@@ -34,10 +33,10 @@ struct AllowedSkips {
 
 struct SurveyInput {
     std::vector<std::string> images;
-    std::string rig;  // empty: none
+    std::string rig;  // empty without one
     NavigationOptions navigation;
     DepthMaps depth{};  // without a place: none; of a mesh that is not read yet, without its scene
-    std::optional<bool> is_by_depth{};  // none: where the navigation tells depths
+    std::optional<bool> is_by_depth{};  // empty: if the navigation gives depths
     CameraNumbers camera;
     Dropouts dropouts = Dropouts::Mark;
     bool strict = false;
@@ -46,26 +45,26 @@ struct SurveyInput {
 };
 
 void add_images(CLI::App& app, SurveyInput& input);
-// --rig, where the rig tells of its camera alone.
+// --rig, if only the rig's camera is used.
 void add_survey_rig(CLI::App& app, SurveyInput& input);
-// --nav and all that says how it is to be understood.
+// --nav and the options for its interpretation.
 CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
-// --depth-map and --depth-unit, --relief and what it is to be understood by; and all that says how
-// ranges are to be understood.
+// --depth-map and --depth-unit, --relief, and the options for the interpretation of either and of
+// ranges.
 CLI::Option* add_depth_maps(CLI::App& app, SurveyInput& input);
 void add_depth_options(CLI::App& app, SurveyInput& input);
-// --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
-// has_map: an image's exposure can be told by what it is divided by.
+// --bayer, --half, --crop, --black-level, --exposure; --white-level if brightness is limited.
+// has_map: an image's exposure can be derived from the map that divides it.
 void add_camera_options(CLI::App& app,
                         SurveyInput& input,
                         bool has_white = true,
                         bool has_map = false);
-// --dropouts. corrects: by the light that was on.
+// --dropouts. corrects: with the lamps that were on.
 void add_dropouts(CLI::App& app, SurveyInput& input, bool corrects);
 // --strict, --allow-skipped, --json
 void add_outcome_options(CLI::App& app, SurveyInput& input);
-// --mask, --format, --compression, and how to encode images to look at. Once parsed, the format has
-// all of it, or is refused.
+// --mask, --format, --compression, and the encoding of images for viewing. After parsing, the
+// format is complete or was refused.
 using Settle = std::function<void()>;
 [[nodiscard]] Settle add_format_options(CLI::App& app, ResultFormat& format);
 
@@ -73,15 +72,15 @@ using Settle = std::function<void()>;
 [[nodiscard]] std::optional<Rig> rig_of(const SurveyInput& input);
 
 // The images except those in the output; and the camera from the options, then from the rig, if
-// there is one, then from the files. An InputError if these contradict each other, or have no such
+// given, then from the files. An InputError if these contradict each other or do not contain the
 // crop.
 [[nodiscard]] Survey read_survey(const SurveyInput& input,
                                  const std::filesystem::path& output,
                                  const Rig* rig);
-// The depth maps, or the mesh, which is read here. None: the floor is a plane.
+// The depth maps, or the mesh, which is read here. Empty: the floor is a plane.
 [[nodiscard]] std::optional<DepthMaps> depth_of(const SurveyInput& input,
                                                 const std::optional<Navigation>& navigation);
-// None where depth maps do without.
+// Empty if depth maps do not need it.
 [[nodiscard]] std::optional<Navigation> navigation_of(const SurveyInput& input,
                                                       const std::vector<ImageFile>& files,
                                                       const Rig& rig);
@@ -89,12 +88,12 @@ using Settle = std::function<void()>;
                                          const std::vector<ImageFile>& files,
                                          const Rig* rig);
 
-// A line of progress, a warning of what looks wrong, or when strict an InputError, and each skipped
-// image and each dropout.
+// Reports a line of progress, warnings about implausible data, or if strict an InputError, and each
+// skipped image and dropout.
 [[nodiscard]] RunWatch terminal_watch(bool strict);
 
-// "camera: RGGB, black level 64, white level 4095", "navigation: ..."; nothing if there is nothing
-// to report.
+// "camera: RGGB, black level 64, white level 4095", "navigation: ..."; prints nothing if there is
+// nothing to report.
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
 // "relief: depth maps of depth, along the axis"; "relief: reef.ply, east-north-up, by altitudes"

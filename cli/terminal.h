@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the command says: results on standard output, messages on standard error. Nothing else
-// prints (scripts/banned), so no name of a file, no cell of a table and nothing that another
-// program said can steer the terminal or feign a line of ours: see base/printable.h.
+// The command's output: results on standard output, messages on standard error. No other code
+// prints (scripts/banned), so file names, cells of tables and other programs' output cannot control
+// the terminal or imitate our lines: see base/printable.h.
 #pragma once
 
 #include "base/printable.h"
@@ -30,7 +30,7 @@ void warn(fmt::format_string<Values...> text, const Values&... values) {
     warn_text(fmt::format(fmt::runtime(text), shown_value(values)...));
 }
 
-// Output must have arrived: a full disk behind a redirection is a RunError.
+// Checks that output was written: a full disk behind a redirection is a RunError.
 void flush_said();
 
 }  // namespace aphotic::cli

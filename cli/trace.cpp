@@ -30,8 +30,8 @@ struct TraceCommandOptions {
     bool json = false;
 };
 
-// Its images have the same names, and would be compared with the reference as if POV-Ray had made
-// them.
+// The tracer's images have the same names, and would be compared with the reference as if POV-Ray
+// had made them.
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
@@ -52,7 +52,7 @@ struct Traced {
     std::size_t wavelengths = 0;  // the planes of spectral.exr
     std::size_t grid = 0;         // wavelengths of the signals
     std::vector<TracedEmitter> emitters;
-    std::size_t on_edges = 0;  // pixels for which the errors do not hold
+    std::size_t on_edges = 0;  // pixels to which the errors do not apply
     std::optional<ManifestModel> model{};
     int threads = 1;
     double seconds = 0.0;

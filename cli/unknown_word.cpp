@@ -21,7 +21,7 @@ std::string nearest_option(const CLI::App& command, std::string_view wanted) {
     return nearest.empty() ? "; --help lists them" : fmt::format(": did you mean --{}?", nearest);
 }
 
-// A line for a word that is an option, none for others.
+// A line for a word that is an option; empty for others.
 std::string unknown_option(const CLI::App& command,
                            const std::string& name,
                            const std::string& word) {
@@ -45,7 +45,7 @@ std::string unknown_words(const CLI::App& app) {
     std::string lines;
     for (const std::string& word : app.remaining()) {
         if (chosen.empty() && !word.starts_with("-")) {
-            // What follows it is its own.
+            // The words after it belong to it.
             return lines + fmt::format("{}: found {}; no such command{}\n",
                                        app.get_name(),
                                        excerpt(word),

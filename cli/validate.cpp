@@ -28,7 +28,7 @@ struct ValidateCommandOptions {
     PlanningOptions planning;
     std::string folder;
     std::string rendered_folder;
-    std::size_t monte_carlo = 0;  // paths of a place; 0: none
+    std::size_t monte_carlo = 0;  // paths per place; 0: no Monte Carlo
     int jobs = all_cores();
     bool json = false;
 };
@@ -60,7 +60,7 @@ void require_promise(const std::string& what, const std::vector<std::string>& no
         fmt::join(no_promise, "; "));
 }
 
-// For a render that can be compared with the rig's reference.
+// Refuses a render that cannot be compared with the rig's reference.
 Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
     Manifest manifest = read_manifest(folder);
     require_rendered(folder);
@@ -75,7 +75,7 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
                      rig.camera.height_px);
 }
 
-// Of a place, model over truth, with the truth's standard error.
+// The ratio of model to truth at a place, with the truth's standard error.
 void print_model(const ModelCheck& model) {
     if (model.places.empty()) return;
     const auto ratio = [](double of_model, const Estimate& truth) {
@@ -106,7 +106,7 @@ void print_model(const ModelCheck& model) {
     say("  off by {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n", rms[0], rms[1], rms[2]);
 }
 
-// Over the comparisons, the largest share of pixels left to edges, and the largest error there.
+// Over the comparisons, the largest share of pixels on edges, and the largest error there.
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
@@ -174,7 +174,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const UserScene* const scene = planned.plan.scene.user_scene.get();
     require_promise(scene != nullptr ? scene->file.string() : options.planning.rig_file,
                     planned.plan.no_promise);
-    // Everything that can be refused is refused before there is a folder.
+    // All invalid input is refused before a folder is made.
     PovRay povray;
     int jobs = options.jobs;
     if (is_rendered) {
