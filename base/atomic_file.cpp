@@ -32,8 +32,8 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-// How much of the file's name goes into a temporary's name: all of it, if the longest name that
-// file systems allow has room.
+// The part of the file's name that is used in a temporary's name: all of it, if within the longest
+// name that file systems allow.
 std::string kept_name_of(const fs::path& file) {
     constexpr std::size_t kLongestName = 255;
     constexpr std::size_t kOurs = 48;  // dots, boot, numbers, process and "part"
@@ -48,8 +48,8 @@ bool is_gone(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-// Where process numbers are valid: the first digits of the kernel's boot_id, and the inode of the
-// process namespace. Empty if /proc does not say.
+// The scope in which process numbers are valid: the first digits of the kernel's boot_id, and the
+// inode of the process namespace. Empty if /proc does not provide them.
 struct ProcessSpace {
     std::string boot{};
     std::string numbers{};
@@ -108,7 +108,7 @@ void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
 
 // Flushes a file with its contents, or a folder with its names, to the disk. Some network file
 // systems cannot and return EINVAL or ENOTSUP, and a folder that may not be listed (EACCES) cannot
-// be opened: there the system takes care of it.
+// be opened: the system then writes them.
 bool is_synced(const fs::path& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) return errno == EACCES;
@@ -143,7 +143,7 @@ void AtomicFile::commit() {
     const auto fail = [&](int error) {
         throw RunError("{}: cannot be written: {}", final_path_.string(), std::strerror(error));
     };
-    // In this order: otherwise a power cut may leave a file's name whose bytes are not there yet.
+    // In this order, since otherwise a power cut may leave a file's name without its bytes.
     if (!is_synced(temporary_)) fail(errno);
     std::error_code error;
     fs::rename(temporary_, final_path_, error);
@@ -187,7 +187,7 @@ std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
                          most_bytes / kMebibyte);
     };
     if (fs::is_regular_file(path)) require_room(fs::file_size(path));
-    // Counted while reading as well: a pipe or a device does not report its size.
+    // Also counted while reading, since a pipe or a device does not report its size.
     std::string text;
     std::vector<char> chunk(1U << 16U);
     while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {

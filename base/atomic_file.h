@@ -11,20 +11,21 @@
 // nothing is left behind, even when SIGINT, SIGTERM or SIGHUP ends the process
 // (base/interruption.h). A failed write, sync or rename is a RunError that names the file.
 //
-// Only SIGKILL or a machine that goes down leaves a temporary, since neither can clean up:
+// Only SIGKILL, or a crash or power cut of the machine, leaves a temporary:
 //
 //   .image.5f3a9c01-f000003c-1234.part.exr
 //
-// The name holds the kernel's boot, its process namespace (containers have different ones) and the
-// process. Other machines and containers may write to the same folder, and our process numbers mean
-// nothing there, so the next run removes a temporary only if it is certain that nobody is writing
-// it:
+// The name contains the kernel's boot, its process namespace (containers have different ones) and
+// the process. Other machines and containers may write to the same folder, and our process numbers
+// mean nothing there, so the next run removes a temporary only if it is certainly no longer being
+// written:
 //
-//   - same boot, same space of numbers: no such process is left
+//   - same boot, same namespace: no such process is left
 //   - another boot: the file system is a disk or memory of this machine, so that boot is over
 //
-// Others stay, such as those of a killed container, or of a machine that went down while writing to
-// a network folder. So do those of versions up to 0.2, which hold the process number only.
+// Others are kept, such as those of a killed container, or of a machine that crashed while writing
+// to a network folder. So are those of versions up to 0.2, whose names contain only the process
+// number.
 #pragma once
 
 #include "base/interruption.h"
@@ -60,12 +61,12 @@ class AtomicFile {
 void remove_abandoned_files(const std::filesystem::path& folder);
 void remove_abandoned_of(const std::filesystem::path& file);
 
-// A signal that would end us waits until the file is whole.
+// A signal that would end the process waits until the file is complete.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
 
-// More than any text that people write, or that is worth keeping in memory.
+// More than any text written by hand, or worth keeping in memory.
 inline constexpr std::size_t kMostTextFile_bytes = 256 * kMebibyte;
 
 // The whole file. An unreadable file is an InputError, since users name such files. So is one of

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lines and fields of the text files that people and spreadsheets write. Lines end in LF or CR LF.
+// Lines and fields of text files written by hand or by spreadsheets. Lines end in LF or CR LF.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline constexpr std::string_view kBlanks = " \t\r";
     return fields;
 }
 
-// The byte order mark that spreadsheets put before UTF-8.
+// Removes the byte order mark that spreadsheets put before UTF-8.
 [[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view text) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     return text.starts_with(kMark) ? text.substr(kMark.size()) : text;

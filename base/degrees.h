@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Degrees, for people, and radians, in which everything here computes.
+// Conversion between degrees, for people, and radians, for all computations.
 #pragma once
 
 #include <numbers>

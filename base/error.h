@@ -2,9 +2,9 @@
 //
 // The two ways in which a run can fail through no fault of the program.
 //
-// InputError  something that the user gave is wrong: option, rig, table, manifest.
-//             The message says where, what was found and what is allowed. Exit status 2.
-// RunError    POV-Ray or the file system failed. The message says which file or frame.
+// InputError  the user's input is wrong: option, rig, table, manifest.
+//             The message states the place, what was found and what is allowed. Exit status 2.
+// RunError    POV-Ray or the file system failed. The message names the file or frame.
 //             Exit status 3.
 #pragma once
 

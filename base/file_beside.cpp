@@ -30,7 +30,7 @@ fs::path end_of(const fs::path& path) {
 fs::path file_beside(const fs::path& folder, const std::string& name) {
     fs::path path = folder / name;
     constexpr std::string_view kAllowed = "a file in the same folder or below it";
-    // Checks the text of the path first, so that nothing outside is even looked up.
+    // Checks the text of the path first, so that no path outside is accessed.
     if (leads_out(fs::path(name).lexically_normal())) {
         throw InputError("found '{}'; allowed: {}", name, kAllowed);
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A file that another file names, such as a table in a rig: it must be in the folder of that file
-// or below. A rig may come from anyone, so it must not make us read files that did not come with
-// it. A path that leaves the folder is refused, whether absolute, through ".." or through a
-// symbolic link, and so is anything but a regular file: a pipe, a device, a folder.
+// or below. A rig may come from anyone, so it must not make us read files outside its own folder. A
+// path that leaves the folder is refused, whether absolute, through ".." or through a symbolic
+// link, and so is anything but a regular file: a pipe, a device, a folder.
 //
 // Files that the user names on the command line are trusted and not read through this.
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kind of a file given instead of text, from its first bytes: "a PNG image", "a zip archive,
-// such as .xlsx or .npz". A message can then say more than that the text is invalid.
+// such as .xlsx or .npz". Messages can thus be more specific than "invalid text".
 #pragma once
 
 #include <string_view>

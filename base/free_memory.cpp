@@ -36,7 +36,7 @@ fs::path control_group(const fs::path& root) {
     return {};
 }
 
-// A group's own limit, infinite if it has none: its file then says "max".
+// The memory left within a group's own limit; infinite without a limit ("max" in its file).
 std::uint64_t left_in_group(const fs::path& folder) {
     const auto most = number_in(folder / "memory.max");
     const auto taken = number_in(folder / "memory.current");

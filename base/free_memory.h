@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The memory that programs may use now: what the kernel reports as available, which includes caches
-// that it would give up, or less if a control group (version 2) has a lower limit, as in a
-// scheduler's job or a container.
+// The memory that programs may use now: the amount that the kernel reports as available, including
+// reclaimable caches, or less if a control group (version 2) has a lower limit, as in a scheduler's
+// job or a container.
 #pragma once
 
 #include <cstdint>

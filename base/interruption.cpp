@@ -29,14 +29,15 @@ std::atomic<const char*> last_words = nullptr;
 static_assert(std::atomic<int>::is_always_lock_free &&
               std::atomic<const char*>::is_always_lock_free);
 
-std::atomic<bool> is_told = false;  // Interrupted is propagating
+std::atomic<bool> is_told = false;  // true while Interrupted propagates
 
 std::mutex uses_mutex;
 int uses = 0;  // holds and temporaries
 std::array<struct sigaction, kSignals.size()> previous_actions{};
 
 // A thread that registered a file's name may not have created the file yet, and would do so after
-// we removed it, so such a file is waited for. An open file without a name goes with the process.
+// we removed it, so such a file is waited for. An open file without a name vanishes with the
+// process.
 void remove_temporaries() {
     constexpr int kMostWaits = 50;
     constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 2'000'000};
@@ -56,7 +57,7 @@ void remove_temporaries() {
     }
 }
 
-// A thread that gets here while the process ends must not free the handler's data, nor start
+// A thread that arrives here while the process ends must neither free the handler's data nor start
 // another file.
 void wait_if_ending() {
     while (is_ending) ::pause();
@@ -65,7 +66,7 @@ void wait_if_ending() {
 void say_last_words() {
     const char* const words = last_words;
     if (words == nullptr) return;
-    // Whether they arrive changes nothing about the end.
+    // The process ends whether or not they are written.
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, ::strlen(words));
 }
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// SIGINT, SIGTERM and SIGHUP while something must be cleaned up first: a running POV-Ray, a scratch
+// SIGINT, SIGTERM and SIGHUP during work that requires cleaning up: a running POV-Ray, a scratch
 // folder, a partly written image.
 //
 //   const InterruptionHold hold;
 //   while (...) { throw_if_interrupted(); ... }
 //
 // While a hold lives, these signals are noted instead of ending the process. Interrupted then
-// unwinds the stack and so cleans up; whoever catches it calls end_by_signal(), so that a shell or
-// a scheduler sees which signal it was. A signal that nobody checked for ends the process when the
-// last hold goes.
+// unwinds the stack and so cleans up; the code that catches it calls end_by_signal(), so that a
+// shell or a scheduler detects the signal. A signal that was not checked for ends the process when
+// the last hold ends.
 //
-// Without a hold they end us at once, as ever, but for two things: the files that a
-// RemovedBySignal names are removed first, and what LastWords say is printed. Where the host of our
-// libraries has a handler of its own, the signal is noted, and raised again when the last of these
-// objects goes. Signals that are ignored (nohup) stay so.
+// Without a hold they end the process at once, as by default, except that files named by a
+// RemovedBySignal are removed first and LastWords are printed. If the host of our libraries has its
+// own handler, the signal is noted, and raised again when the last of these objects is destroyed.
+// Ignored signals (nohup) remain ignored.
 #pragma once
 
 #include <atomic>
@@ -24,7 +24,7 @@
 
 namespace aphotic {
 
-// Not a RunError, since nothing failed.
+// It is no RunError, since nothing failed.
 class Interrupted : public std::runtime_error {
   public:
     explicit Interrupted(int signal);
@@ -42,8 +42,8 @@ class InterruptionHold {
     InterruptionHold& operator=(const InterruptionHold&) = delete;
 };
 
-// A file to remove if a signal ends the process during this object's life. It need not exist yet.
-// Beyond 4096 at a time the file stays, and the next run removes it (base/atomic_file.h).
+// A file to remove if a signal ends the process during this object's lifetime. It need not exist
+// yet. Beyond 4096 at a time the file stays, and the next run removes it (base/atomic_file.h).
 class RemovedBySignal {
   public:
     explicit RemovedBySignal(const std::filesystem::path& file);
@@ -56,7 +56,8 @@ class RemovedBySignal {
     std::atomic<const char*>* place_ = nullptr;
 };
 
-// Written to standard error by a signal that ends us at once, while this lives. One at a time.
+// Text written to standard error if a signal ends the process at once during this object's
+// lifetime. One at a time.
 class LastWords {
   public:
     explicit LastWords(std::string words);
@@ -68,7 +69,7 @@ class LastWords {
     std::string words_;
 };
 
-// Throws Interrupted when a signal was noted.
+// Throws Interrupted if a signal was noted.
 void throw_if_interrupted();
 
 // Ends the process as the signal would have: a shell reports 128 + signal.

@@ -14,8 +14,8 @@
 namespace aphotic {
 namespace {
 
-// The library's own callback for each new value walks through all values of a list whenever one of
-// them ends.
+// Not by the library's own callback for each new value, which visits all values of a list whenever
+// one of them ends.
 int depth_of(std::string_view text) {
     int depth = 0;
     int deepest = 0;
@@ -86,7 +86,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
     constexpr int kIndent = 2;
     const std::string dumped =
         json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    // Characters that JSON leaves as they are and a terminal obeys: U+007F, and U+0080 to U+009F.
+    // Escapes control characters that JSON does not: U+007F, and U+0080 to U+009F.
     std::string text;
     for (std::size_t i = 0; i < dumped.size(); ++i) {
         const auto byte = static_cast<unsigned char>(dumped[i]);

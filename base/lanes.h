@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several numbers that go through the same formula, in packs as wide as the processor's vectors.
+// Several numbers for the same formula, in packs as wide as the processor's vectors.
 //
 //   Lanes         kLanes numbers in memory; LaneVector: as many vectors (x, y, z)
-//   Pack          what a formula is written for: +, *, std::experimental's sqrt, min, max, where
+//   Pack          the type of a formula's values: +, *, std::experimental's sqrt, min, max, where
 //
 // A formula is one loop over packs, whose values stay in registers; table lookups are done lane by
 // lane.
@@ -21,7 +21,8 @@ using Pack = std::experimental::native_simd<double>;
 static_assert(kLanes % Pack::size() == 0);
 
 struct Lanes {
-    // Aligned for the largest vectors, so that all parts of a program agree whatever their own.
+    // Aligned for the largest vectors, so that all parts of a program agree whatever their vector
+    // width.
     alignas(kLanes * sizeof(double)) std::array<double, kLanes> lane;
 
     double& operator[](std::size_t k) { return lane[k]; }

@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view wanted, std::span<const std::string> known) {
-    // The commonest slip: a missing unit.
+    // The most common mistake is a missing unit.
     constexpr std::size_t kLeastPrefix = 3;
     for (const std::string& name : known) {
         if (wanted.size() >= kLeastPrefix && name.starts_with(wanted)) return name;

@@ -44,7 +44,8 @@ VectorXd scaled_fit(const MatrixXd& G, const VectorXd& b) {
         if (best < 0) break;
         is_free[static_cast<std::size_t>(best)] = true;
         free.push_back(best);
-        // Moves towards the minimum until a coefficient would turn negative; returns those that do.
+        // Moves towards the minimum until a coefficient would become negative; such ones become 0
+        // and are no longer free.
         for (VectorXd to = minimum_over(G, b, free);; to = minimum_over(G, b, free)) {
             double share = 1.0;
             for (const Index i : free) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Arrays as numpy.load() reads them: the format .npy, written as version 1.0, of little-endian
-// floats
-// (<f4) in C's order, the last index fastest.
+// floats (<f4) in C's order, the last index fastest.
 //
 //   \x93NUMPY 1 0, the length of the header in 2 bytes, the header: a dictionary of Python's with
 //   descr, fortran_order and shape, padded with blanks and ended with a newline so that the samples
@@ -18,7 +17,7 @@
 
 namespace aphotic {
 
-// As many samples as the shape has elements. The file is complete or absent.
+// The number of samples must be that of the shape's elements. The file is complete or absent.
 void write_npy(const std::filesystem::path& path,
                const std::vector<std::size_t>& shape,
                std::span<const float> samples);

@@ -2,8 +2,8 @@
 //
 // Numbers in text: in files, in options, in other programs' output. All of our text uses the
 // decimal point, whatever locale the host of our libraries has set: strtod, stod, streams and the
-// like would read 12.5 as 12 where people write 12,5. scripts/banned allows only std::from_chars,
-// which ignores the locale. Blanks and a leading + are not part of a number.
+// like would read 12.5 as 12 in a locale with a decimal comma. scripts/banned allows only
+// std::from_chars, which ignores the locale. Blanks and a leading + are not part of a number.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A number of a binary file, by its bytes, in the byte order of files and of this machine alike:
+// A number of a binary file, from its bytes, in the byte order of both the files and this machine:
 // little-endian. The bytes need no alignment.
 #pragma once
 

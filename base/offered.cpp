@@ -20,7 +20,7 @@ double at_least(double value, int digits) {
     if (!std::isfinite(value) || value == 0.0) return value;
     const double nearest = rounded(value, digits);
     if (nearest >= value) return nearest;
-    // It was rounded down by less than a step, so one more step is enough.
+    // It was rounded down by less than a step, so adding one step is enough.
     const double step = std::pow(10.0, std::floor(std::log10(std::abs(nearest))) - digits + 1);
     return rounded(nearest + step, digits);
 }

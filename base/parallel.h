@@ -15,7 +15,7 @@ namespace aphotic {
 
 // Runs work(i, thread) once for each i below `count`, in threads 0 to threads - 1; the caller is
 // thread 0. The order is unspecified: results do not depend on `threads` if each piece has its own
-// place for them. After a piece throws no other starts, and the exception is rethrown when all
+// place for them. After a piece throws, no other starts, and the exception is rethrown when all
 // threads have ended.
 template <class Work>
 void parallel_for(std::size_t count, std::size_t threads, const Work& work) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Text from outside, made safe for a message: a control character, which could break the line or
-// steer a terminal, is shown as \x1b. Other bytes, UTF-8 or not, stay as they are. The length of a
-// message is limited, however long the text it quotes.
+// control a terminal, is shown as \x1b. Other bytes, UTF-8 or not, stay as they are. The length of
+// a message is limited, whatever the length of the quoted text.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ inline constexpr std::size_t kMostQuoted_bytes = 100;
 inline constexpr std::size_t kMostMessage_bytes = 4000;
 [[nodiscard]] std::string whole_message(std::string_view text);
 
-// A text that goes into a message: printable, newlines included, and no longer than a path with
-// words around it.
+// A text used in a message: printable, newlines included, and no longer than a path with words
+// around it.
 inline constexpr std::size_t kMostText_bytes = 1500;
 [[nodiscard]] std::string shown_text(std::string_view text);
 

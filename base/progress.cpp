@@ -14,12 +14,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::seconds kBetweenPrints = 1s;  // on a terminal, and before the first there
-constexpr std::chrono::seconds kBetweenLines = 10s;  // of a file
+constexpr std::chrono::seconds kBetweenPrints = 1s;  // on a terminal, also before the first
+constexpr std::chrono::seconds kBetweenLines = 10s;  // in a file
 
 std::atomic<bool> is_hushed = false;
 
-// A thread that only repeats must not take the signals that are to wake those that work.
+// A thread that only repeats must not receive signals meant to wake the working threads.
 void block_signals() {
     sigset_t all;
     ::sigfillset(&all);

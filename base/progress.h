@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far the work is and how long it will take, on standard error: on a terminal one line that is
-// written over, and "aphotic: rendering: 3 of 36 frames, 8 %, 2:10 left" every ten seconds where
-// it is redirected. Silent until the first second (ten seconds) is over, and when hushed. A thread
-// of its own repeats it, so that work that reports seldom is seen to be alive.
+// The progress of the work and the time left, on standard error: on a terminal, one line that is
+// overwritten; if redirected, "aphotic: rendering: 3 of 36 frames, 8 %, 2:10 left" every ten
+// seconds. Silent for the first second (ten seconds), and when hushed. A separate thread repeats
+// it, so that work with rare reports is seen to be alive.
 #pragma once
 
 #include <chrono>
@@ -24,12 +24,12 @@ void hush_progress();
 class ProgressLine {
   public:
     ProgressLine();
-    explicit ProgressLine(std::chrono::milliseconds between);  // as often as that
+    explicit ProgressLine(std::chrono::milliseconds between);  // the interval
     ~ProgressLine();                                           // wipes the line
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    // share: of this part of the work, 0 to 1. Where it falls another part begins, and the time
+    // share: of this part of the work, 0 to 1. When it decreases, another part begins, and the time
     // left is that part's.
     void show(std::string_view what, double share);
 
@@ -52,7 +52,7 @@ class ProgressLine {
     Clock::time_point part_begins_;
     Clock::time_point due_;
     bool is_shown_ = false;
-    std::jthread repeater_;  // last, for it uses the others
+    std::jthread repeater_;  // last, since it uses the others
 };
 
 }  // namespace aphotic

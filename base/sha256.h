@@ -12,10 +12,10 @@ namespace aphotic {
 
 [[nodiscard]] std::string sha256_of_text(std::string_view text);
 
-// Of the samples' bytes in memory.
+// The digest of the samples' bytes in memory.
 [[nodiscard]] std::string sha256_of_floats(std::span<const float> samples);
 
-// Throws RunError when the file cannot be read.
+// Throws RunError if the file cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace aphotic

@@ -20,7 +20,7 @@ namespace aphotic {
 }
 
 // The output of printf for an ASCII format: a newline in a path reaches the shell as one, and
-// steers no terminal that shows the command. The shell drops a newline at the end.
+// does not control a terminal that shows the command. The shell drops a newline at the end.
 [[nodiscard]] inline std::string printed_word(std::string_view word) {
     std::string format;
     for (const char c : word) {

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // From /proc/locks, whose lines read "1: FLOCK  ADVISORY  WRITE 1234 00:2f:567 0 EOF": process,
-// device, inode. 0 stands for a process that we cannot see.
+// device, inode. 0 stands for a process that is not visible to us.
 std::string holder_of(int descriptor) {
     struct stat folder {};
     if (::fstat(descriptor, &folder) != 0) return "";

@@ -3,17 +3,18 @@
 // A folder for long work: one run at a time, which continues where an interrupted run stopped,
 // alone or as one of several shares.
 //
-// Lock: the kernel's own (flock) on the folder itself. No lock file is in the user's way, a
-// read-only folder can be locked too, and the lock ends with its process, however that ended. A
-// kernel's locks are local: two machines in one network folder do not exclude each other.
+// Lock: the kernel's own (flock) on the folder itself. There is no lock file, a read-only folder
+// can be locked too, and the lock ends with its process, however that ends. A kernel's locks are
+// local: two machines in one network folder do not exclude each other.
 //
 // Journal: finished work, one line of JSON per piece, appended once its files are in place. A line
-// that an interruption truncated, or that is not ours, is skipped when the journal is read; the
-// last of several lines with one name counts. A piece of work counts as done if its digest, which
-// covers everything its result depends on, is the same, and its files exist in the recorded size.
+// that was truncated by an interruption, or is not ours, is skipped when the journal is read; of
+// several lines with the same name, the last one counts. A piece of work counts as done if its
+// digest, which covers everything its result depends on, is the same, and its files exist with the
+// recorded sizes.
 //
 // Share: 2/4 is every fourth piece, starting at the second. Neighbouring pieces, such as a dive's
-// images, take about equally long, so shares of this kind do too. A share writes to its own folder,
+// images, take about the same time, so these shares do too. A share writes to its own folder,
 // DIR/share-2-of-4, to which no other task writes. The same work without a share collects the
 // results from there.
 #pragma once
@@ -31,13 +32,13 @@ namespace aphotic {
 
 enum class FolderUse {
     Read,   // others may read as well
-    Write,  // nobody else may
+    Write,  // exclusive
 };
 
 class FolderLock {
   public:
-    // Does not wait: a RunError names the folder and, if the kernel tells, the process that holds
-    // the lock. If the folder is missing, or its file system has no locks, nothing is locked.
+    // Does not wait: a RunError names the folder and, if the kernel reports it, the process that
+    // holds the lock. If the folder is missing, or its file system has no locks, nothing is locked.
     FolderLock(const std::filesystem::path& folder, FolderUse use);
     ~FolderLock();
     FolderLock(FolderLock&& other) noexcept;
@@ -47,17 +48,17 @@ class FolderLock {
     int descriptor_;
 };
 
-// The folder, created and locked until the lock goes, and cleaned of what killed runs left partly
-// written in it and in the folders below.
+// Creates the folder and locks it during the lock's lifetime, and removes partly written files of
+// killed runs in it and in the folders below.
 [[nodiscard]] FolderLock claim_folder(const std::filesystem::path& folder);
 
-// The same for a run that also reads another folder, which must not change meanwhile; it may be the
-// same folder.
+// The same for a run that also reads another folder, which must not change in the meantime; it may
+// be the same folder.
 [[nodiscard]] std::vector<FolderLock> claim_folders(const std::filesystem::path& written,
                                                     const std::filesystem::path& read);
 
-// The same for work that writes only much later: a folder that cannot be made is found out early.
-// It is removed again if it stays empty.
+// The same for work that writes only much later: failure to make the folder is detected early. It
+// is removed again if it remains empty.
 class WorkFolder {
   public:
     explicit WorkFolder(const std::filesystem::path& folder);
@@ -95,7 +96,7 @@ class Journal {
                                const std::string& digest,
                                const std::vector<std::filesystem::path>& files) const;
 
-    // Null if there is nothing of that name.
+    // Null if there is no entry of that name.
     [[nodiscard]] Counts counts(const std::string& name) const;
 
     // Not thread-safe. A RunError if it cannot be written.
