@@ -53,7 +53,7 @@ void write_any_image(const std::filesystem::path& file, const WrittenImage& imag
     std::string fault;
     from_part<Write>("aphotic_write_any_image")(destination.temporary(), image, fault);
     if (!fault.empty()) throw RunError("{}: cannot be written: {}", file.string(), fault);
-    // OpenImageIO says so in PNG and JPEG alone (any_image_oiio.cpp).
+    // OpenImageIO marks sRGB only in PNG and JPEG (any_image_oiio.cpp).
     const bool is_unmarked = image.is_srgb && file.extension().string().starts_with(".tif");
     if (image.tags || is_unmarked)
         add_image_tags(destination.temporary(), image.tags, is_unmarked, file);

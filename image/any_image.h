@@ -26,9 +26,9 @@ struct AnyImage {
     std::function<std::vector<float>(std::size_t channel)> samples;
     // All channels, one after another, in one pass through the file.
     std::function<std::vector<float>()> planes;
-    // The integer that became 1: 255, 4095, 65535. 0 for floats.
+    // The integer that is scaled to 1: 255, 4095, 65535. 0 for floats.
     double full_scale = 0.0;
-    std::string description;  // the file's own description; empty if it has none
+    std::string description;  // the file's own description; empty without one
     std::string date_time;    // when it was taken, "YYYY:MM:DD hh:mm:ss", or empty
 };
 
@@ -41,13 +41,14 @@ struct AnyImage {
 [[nodiscard]] AnyImage open_any_image(const std::filesystem::path& file);
 
 // The file's metadata by OpenImageIO's names, such as "Exif:DateTimeOriginal". Only the header is
-// read. An InputError if it has none.
+// read. An InputError if there is none.
 [[nodiscard]] std::map<std::string, std::string> header_of_image(const std::filesystem::path& file);
 
 // Writes planes as an image in the format of the file's extension, complete or not at all. Integers
 // map 0 to 1 to their range, rounded and clipped. A failure to write is a RunError.
 enum class SampleType { Bits8, Bits16 };
-// All lossless except JPEG: deflate at its fastest level, and at most programs' default level.
+// All are lossless except JPEG: deflate at its fastest level, and at the default level of most
+// programs.
 enum class Compression { None, Fast, Small };
 struct WrittenImage {
     int width_px = 0;
@@ -58,9 +59,9 @@ struct WrittenImage {
     Compression compression = Compression::Fast;
     std::string description{};
     std::string
-        date_time{};    // empty: unknown. Never the current time: the same image is the same file
+        date_time{};    // empty: unknown. Never the current time: equal images give equal files
     SharedTags tags{};  // the source file's; for TIFF, PNG and JPEG
-    bool is_srgb = false;   // the samples are encoded as sRGB, and the file says so
+    bool is_srgb = false;   // the samples are encoded as sRGB, as stated in the file
     int jpeg_quality = 95;  // 1 to 100; chroma is not subsampled
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);

@@ -131,7 +131,7 @@ constexpr std::string_view kFormats =
     throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
 }
 
-// The result of read(). Whatever the libraries throw becomes an error about the file.
+// The result of read(). Any exception of the libraries becomes an error about the file.
 template <typename Read>
 auto reading(const std::filesystem::path& file, const Read& read) {
     try {
@@ -273,7 +273,7 @@ static aphotic::ColourProfile profile_of(const aphotic::WrittenImage& image) {
     return image.is_srgb ? aphotic::ColourProfile::Srgb : aphotic::ColourProfile::Linear;
 }
 
-// Why it could not be written, or nothing.
+// The reason why it could not be written, or empty.
 static std::string written(const std::filesystem::path& file, const aphotic::WrittenImage& image) {
     WatchedFile watched(file);
     const std::unique_ptr<OIIO::ImageOutput> output =
@@ -301,7 +301,8 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
     if (!image.date_time.empty()) {
         spec.attribute("DateTime", image.date_time);
     } else if (is_tiff) {
-        // Without any, TIFF gets the time of writing; a number is no time, and is left out.
+        // Without a value, TIFF receives the time of writing; a number is not a time, and is
+        // omitted.
         spec.attribute("DateTime", 0);
     }
     if (is_tiff) spec.attribute("tiff:write_exif", 0);  // it reads what it wrote, and cannot here

@@ -8,7 +8,7 @@
 namespace aphotic {
 
 void* function_of_part(const char* name) {
-    // Searched along the program's run path, then where it was installed; never unloaded, since the
+    // Searched along the program's run path, then at the installed place; never unloaded, since
     // images refer to it.
     static void* const kPart = [] {
         void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);

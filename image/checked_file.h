@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A new file that libraries write to, which keeps the system's error message, such as "No space
-// left on device". Libraries forget it, or report nothing.
+// left on device". Libraries lose it, or report no error.
 //
-// Header only, because the part loaded at run time uses it too.
+// Header only, since the part loaded at run time also uses it.
 #pragma once
 
 #include <fcntl.h>
@@ -30,7 +30,7 @@ class CheckedFile {
     CheckedFile(const CheckedFile&) = delete;
     CheckedFile& operator=(const CheckedFile&) = delete;
 
-    // Whether all bytes are there.
+    // Whether all bytes were written.
     bool write(const void* bytes, std::size_t count, std::int64_t at) {
         const auto* from = static_cast<const char*>(bytes);
         while (count > 0 && error_ == 0) {

@@ -44,7 +44,7 @@ void name(cmsHPROFILE profile, const char* words) {
 }  // namespace
 
 std::vector<std::uint8_t> icc_profile(ColourProfile kind) {
-    constexpr double kVersion = 2.4;  // which every program reads
+    constexpr double kVersion = 2.4;  // supported by every program
     constexpr std::array kNames{"sRGB", "Linear RGB, Rec. 709 primaries", "Linear grey"};
     const Profile profile = made(kind);
     cmsSetProfileVersion(profile.get(), kVersion);

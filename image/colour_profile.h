@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ICC profiles (ICC.1:2010) by Little CMS: what the numbers of an image mean to other programs.
+// ICC profiles (ICC.1:2010) by Little CMS, from which other programs interpret an image's numbers.
 //
 //   sRGB      primaries, white and transfer curve of IEC 61966-2-1
 //   linear    the same primaries and white, transfer curve v = x. A camera's own channels have no
@@ -8,7 +8,7 @@
 //             darker
 //   grey      one channel, linear
 //
-// The same profile is the same bytes whenever it is made.
+// The same profile has the same bytes whenever it is made.
 #pragma once
 
 #include <cstdint>

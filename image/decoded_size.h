@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much memory a file may ask for, judged by its header before a pixel is decoded. A header can
-// claim any size, and decoders trust it.
+// Limits on the memory that a file may require, checked by its header before a pixel is decoded. A
+// header can claim any size, and decoders trust it.
 //
 // A file has up to 32768 pixels each way, two images of the largest size side by side; its tiles,
 // padded to full tiles, take up to 4 times its bytes plus 64 MiB; a block decoded at once takes up
 // to 256 MiB. Besides pixels a file has up to 256 MiB of metadata, thumbnails and further images.
-// And it is not a decompression bomb: deflate, the strongest compression in use, expands a byte to
-// at most 1032, so the file of an image over 1 GiB, as floats, has at least 1/1100 of that. A
-// reader thus takes the memory of the image that the header declares, and less than 1 GiB more;
+// To exclude decompression bombs: deflate, the strongest compression in use, expands a byte to at
+// most 1032, so the file of an image over 1 GiB, as floats, must have at least 1/1100 of that. A
+// reader thus uses the memory of the image that the header declares, and less than 1 GiB more;
 // callers that know the expected size check it first.
 //
 // Messages do not name the file; the caller does.
@@ -39,7 +39,7 @@ struct BigSize {
 
 inline constexpr std::uint64_t kMebi = std::uint64_t{1} << 20U;
 
-// For files of which only metadata is read: libraries allocate the declared size.
+// For files from which only metadata is read, since libraries allocate the declared size.
 inline constexpr std::uint64_t kMostOfNotes_bytes = 512 * kMebi;
 
 inline void require_sides(std::int64_t width, std::int64_t height) {

@@ -200,8 +200,8 @@ ExrWriter::ExrWriter(const fs::path& file,
     }
     for (const std::string& name : channels_)
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    // Linear, as all of OpenEXR is. What a camera's channels are called red, green and blue for are
-    // no primaries; programs that ask are told those that they would assume.
+    // Linear, as always in OpenEXR. A camera's red, green and blue channels have no primaries;
+    // programs that read primaries receive those that they would assume.
     if (std::ranges::find(channels_, "R") != channels_.end())
         Imf::addChromaticities(header, Imf::Chromaticities());
     header.insert("software", Imf::StringAttribute("Aphotic " APHOTIC_VERSION));

@@ -31,7 +31,7 @@ class ExrReader {
 
     [[nodiscard]] int width_px() const;
     [[nodiscard]] int height_px() const;
-    [[nodiscard]] std::vector<std::string> channels() const;  // in the file's order: sorted
+    [[nodiscard]] std::vector<std::string> channels() const;  // in the file's order, sorted
 
     // A text attribute of the header, empty if there is none of that name.
     [[nodiscard]] std::string attribute(const std::string& name) const;
@@ -69,8 +69,8 @@ using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 // written it completely.
 class ExrWriter {
   public:
-    // Most files' samples carry 11 significant bits, so the fastest level finds the zeros; higher
-    // levels take several times longer for a few per cent.
+    // The samples of most files have 11 significant bits, and the fastest level compresses the
+    // zeros; higher levels take several times longer for a few per cent.
     static constexpr int kFastestZip = 1;
 
     // zip_level: 1 to 9, or 0 for no compression.

@@ -94,7 +94,7 @@ std::string words_of(const exr_attr_box2i_t& window) {
 }
 
 // OpenEXR's image reader takes one byte for this type whatever its declared size, but its header
-// reader does not know the type: what follows would be read from the wrong place.
+// reader does not support the type, and would read the following data from the wrong place.
 void require_sizes_of_types(const Headers& headers, int part) {
     const auto count = headers.of<std::int32_t>(part, exr_get_attribute_count);
     for (int i = 0; i < count; ++i) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The format in which POV-Ray writes frames, and what it holds of a sample s:
+// The format in which POV-Ray writes frames, and its precision for a sample s:
 //
 //   exr     half floats        s within 2^-11 of itself, from 2^-14 to 65504
-//   png16   16-bit integers    s within 2^-17 of 1, from 0 to 1: of itself within 2^-11 from 2^-6
-//   on
+//   png16   16-bit integers    s within 2^-17, from 0 to 1; within 2^-11 of itself from 2^-6 on
 //
-// A frame's digits begin at 2^held_log2. png16 is for a POV-Ray that was built without OpenEXR: it
+// A frame has full precision from 2^held_log2. png16 is for a POV-Ray built without OpenEXR: it
 // clips, and dark corners have fewer digits.
 #pragma once
 

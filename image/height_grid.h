@@ -5,12 +5,12 @@
 //   east  = X + (column + a - I) s_x        ModelTiepoint I, J, -, X, Y, -
 //   north = Y - (row + a - J) s_y           ModelPixelScale s_x, s_y, -
 //
-// of the sample's middle: a is 1/2 where a sample stands for its cell, by default, and 0 where it
-// stands for a point (GTRasterType). Samples are integers or floats of up to 64 bits, of one
-// channel; those of GDAL's nodata and those that are not finite are unknown.
+// of the sample's middle: a is 1/2 if a sample represents its cell, by default, and 0 if it
+// represents a point (GTRasterType). Samples are integers or floats of up to 64 bits, of one
+// channel; those equal to GDAL's nodata and those that are not finite are unknown.
 //
-// Refused: degrees, other units, turned grids, and integers that a scale or offset is to make
-// heights of (GDAL's metadata).
+// Refused: degrees, other units, rotated grids, and integers that a scale or offset converts to
+// heights (GDAL's metadata).
 #pragma once
 
 #include <filesystem>
@@ -25,10 +25,10 @@ struct HeightGrid {
     double north_m = 0.0;
     double step_east_m = 0.0;
     double step_south_m = 0.0;
-    std::vector<float> height_m{};  // row by row, as the file has them; NaN: unknown
+    std::vector<float> height_m{};  // row by row, as in the file; NaN: unknown
 };
 
-// An InputError, which names the file, when it has no such grid.
+// An InputError, which names the file, if it has no such grid.
 [[nodiscard]] HeightGrid read_height_grid(const std::filesystem::path& file);
 
 }  // namespace aphotic

@@ -37,7 +37,7 @@ constexpr std::uint32_t kGeoKeyDirectory = 34735;
 constexpr std::uint32_t kGdalMetadata = 42112;
 constexpr std::uint32_t kGdalNodata = 42113;
 
-// None where the file has them of another type, as libtiff then does.
+// Empty if the file has another type, as libtiff reports it.
 template <typename Value>
 std::span<const Value> values_of(TIFF* tiff, std::uint32_t tag, TIFFDataType type) {
     const TIFFField* const field = ::TIFFFindField(tiff, tag, TIFF_ANY);
@@ -55,9 +55,9 @@ std::string text_of(TIFF* tiff, std::uint32_t tag) {
     return text.substr(0, text.find('\0'));
 }
 
-// Those that stand in the directory itself, by their numbers.
+// The keys stored in the directory itself, by their numbers.
 std::map<int, int> geo_keys(TIFF* tiff) {
-    constexpr std::size_t kEntry = 4;  // key, where, count, value
+    constexpr std::size_t kEntry = 4;  // key, location, count, value
     const auto shorts = values_of<std::uint16_t>(tiff, kGeoKeyDirectory, TIFF_SHORT);
     std::map<int, int> keys;
     for (std::size_t i = kEntry; i + kEntry <= shorts.size(); i += kEntry)
@@ -69,7 +69,7 @@ void require_metres(const std::map<int, int>& keys) {
     constexpr int kModelType = 1024;
     constexpr int kGeographic = 2;
     constexpr int kMetre = 9001;
-    constexpr int kOwn = 32767;  // of the file, told elsewhere
+    constexpr int kOwn = 32767;  // user-defined, described elsewhere
     const auto of = [&](int key, int otherwise) {
         const auto found = keys.find(key);
         return found == keys.end() ? otherwise : found->second;
@@ -172,7 +172,7 @@ void read_heights(TIFF* tiff, HeightGrid& grid) {
             const auto room = static_cast<tmsize_t>(part.size());
             const tmsize_t got = is_tiled ? ::TIFFReadEncodedTile(tiff, index, part.data(), room)
                                           : ::TIFFReadEncodedStrip(tiff, index, part.data(), room);
-            if (got < 0) return;  // libtiff says why
+            if (got < 0) return;  // libtiff reports the reason
             for (std::size_t row = top; row < std::min(height, top + down); ++row)
                 for (std::size_t column = left; column < std::min(width, left + across); ++column)
                     grid.height_m[row * width + column] =

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // An image's metadata, Exif, GPS, IPTC and XMP, copied unchanged from one file to another. Omitted
-// is what different pixels make untrue: sizes, compression, colour space, thumbnails, a raw file's
-// levels and matrices; and maker notes, whose offsets cannot be moved.
+// are the tags that different pixels invalidate: sizes, compression, colour space, thumbnails, a
+// raw file's levels and matrices; and maker notes, whose offsets cannot be changed.
 //
 // OpenImageIO copies less: 2.4 drops the GPS position of every TIFF and JPEG, the ISO number of a
 // TIFF, and most of XMP. Exiv2 copies all.
@@ -24,7 +24,7 @@ using SharedTags = std::shared_ptr<const ImageTags>;
 [[nodiscard]] SharedTags read_image_tags(const std::filesystem::path& file);
 
 // Adds these tags, if any, to those of a TIFF, PNG or JPEG, and marks its samples as sRGB. A
-// RunError if it cannot be written, which uses the file's final name if that differs.
+// RunError if it cannot be written, with the file's final name if that differs.
 void add_image_tags(const std::filesystem::path& file,
                     const SharedTags& tags,
                     bool is_srgb = false,
@@ -41,9 +41,9 @@ struct ShotExposure {
 };
 [[nodiscard]] ShotExposure exposure_of(const ImageTags& tags);
 
-// To be written; none where nothing is told. Exif holds a time to 1 ns and, of 1 s and more, to
-// 1 us, an f-number to 1e-6, an ISO number without a fraction. taken_at: when it was taken, in UTC,
-// as "YYYY:MM:DD hh:mm:ss"; empty: not told.
+// Tags to be written; empty if no value is known. Exif stores an exposure time to 1 ns, or to 1 us
+// from 1 s on, an f-number to 1e-6, an ISO number without a fraction. taken_at: the time of the
+// image, in UTC, as "YYYY:MM:DD hh:mm:ss"; empty: unknown.
 [[nodiscard]] SharedTags tags_of(const ShotExposure& exposure, const std::string& taken_at = {});
 
 }  // namespace aphotic

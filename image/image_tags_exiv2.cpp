@@ -27,7 +27,7 @@ struct ImageTags {
     Exiv2::XmpData xmp;
     ShotExposure exposure;
 
-    // Except the description and time that any image has (any_image.h).
+    // Except the description and time, which every image has (any_image.h).
     [[nodiscard]] bool is_empty() const {
         const auto is_of_any = [](const Exiv2::Exifdatum& datum) {
             return datum.key() == "Exif.Image.ImageDescription" ||

@@ -3,7 +3,7 @@
 // The images that both a render and a trace write to their folder, block by block:
 //
 //   image.exr     the camera's signal: float R, G, B
-//   spectral.exr  one float channel a wavelength, R, G, B beside; none without wavelengths
+//   spectral.exr  one float channel per wavelength, and R, G, B; omitted without wavelengths
 //
 // spectral.exr has the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR layout for spectral
 // images", JCGT 10(3), 2021: a channel S0.<wavelength>nm per wavelength, with six decimals and a
@@ -48,7 +48,7 @@ class OutputImages {
     int next_row_ = 0;
     ExrWriter image_file_;
     std::optional<ExrWriter> spectral_file_;
-    std::future<void> writing_;  // last: it is joined before the files go
+    std::future<void> writing_;  // last, to be joined before the files are destroyed
 };
 
 }  // namespace aphotic

@@ -7,7 +7,7 @@
 
 namespace aphotic {
 
-// A sample of 1 may have been clipped, unless the frame's light ends there, as fog does.
+// A sample of 1 may have been clipped, unless the frame's light is limited to 1, as fog is.
 enum class White { IsClipped, IsWhite };
 
 // From FILE.png, POV-Ray's name for an output file without a format, to FILE. Samples are linear

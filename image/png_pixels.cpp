@@ -26,7 +26,7 @@ namespace {
     png_longjmp(png, 1);
 }
 
-// libpng drops a metadata chunk that unpacks to more than this, and reads the file without it:
+// libpng drops a metadata chunk that unpacks to more than this, and reads the file without it;
 // other readers have other limits.
 void pass_over(png_structp png, png_const_charp warning) {
     for (const char* limit : {"chunk cache", "insufficient memory", "too large"}) {

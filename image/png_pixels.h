@@ -12,7 +12,7 @@
 
 namespace aphotic {
 
-// From its first bytes.
+// Whether the first bytes are PNG's.
 [[nodiscard]] bool is_png(const std::filesystem::path& file);
 
 // An InputError without the file's name: libpng's message.

@@ -55,7 +55,7 @@ double bright_value(const CameraImage& image, const Channels& scale) {
         static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
     const double bright = values[static_cast<std::size_t>(rank)];
-    // A small light in the dark: use the brightest.
+    // For a small light in the dark, the brightest sample is used.
     return bright > 0.0 ? bright : *std::ranges::max_element(values);
 }
 
@@ -67,7 +67,7 @@ void require(cairo_status_t status, int width_px, int height_px) {
                    cairo_status_to_string(status));
 }
 
-// A chunk behind the header, its checksum included: sRGB, shown perceptually. Cairo writes none.
+// A chunk after the header, with its checksum: sRGB, perceptual intent. Cairo writes none.
 std::string marked_as_srgb(std::string png) {
     constexpr std::size_t kHeaderEnd = 33;
     constexpr std::string_view kChunk("\0\0\0\1sRGB\0\xAE\xCE\x1C\xE9", 13);

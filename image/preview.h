@@ -5,13 +5,13 @@
 //   shown_c = sRGB( 2^stops * gain * S_c / W_c )
 //
 // S_c    signal of channel c
-// W_c    the white: what the lamp alone would signal, or 1 (none), or the image's own mean
-// gain   puts the image's kBrightShare quantile, over all channels, at kBrightLevel
+// W_c    the white: the lamp's own signal, or 1 (none), or the image's mean
+// gain   scales the image's kBrightShare quantile, over all channels, to kBrightLevel
 // sRGB   encoding of IEC 61966-2-1: 12.92 x up to 0.0031308, else 1.055 x^(1/2.4) - 0.055;
 //        clipped to 0..1, then rounded to 8 bits
 //
 // For viewing, not for measuring: camera channels are shown as if they were sRGB's own primaries. A
-// white surface in clear water is shown grey. A black image stays black.
+// white surface in clear water is shown grey. A black image remains black.
 #pragma once
 
 #include "image/camera_image.h"

@@ -56,7 +56,8 @@ std::string pattern_of(LibRaw& raw, const std::filesystem::path& file) {
     refuse_raw(file, fmt::format("found another mosaic pattern; allowed: RGGB, BGGR, GRBG, GBRG"));
 }
 
-// For every site of a mosaic, or every channel: the common level, the colour's, and the pattern's.
+// The black level of every site of a mosaic, or every channel: the common level, the colour's, and
+// the pattern's.
 double black_at(LibRaw& raw, int row, int column, int colour) {
     const auto& levels = raw.imgdata.color;
     const unsigned rows = levels.cblack[4];
@@ -163,7 +164,7 @@ void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
 
 extern "C" void aphotic_open_raw_file(const std::filesystem::path& file, aphotic::RawFile& opened) {
     const auto raw = std::make_shared<LibRaw>();
-    raw->set_dataerror_handler(nullptr, nullptr);  // it would also print what is thrown
+    raw->set_dataerror_handler(nullptr, nullptr);  // it would also print the errors that are thrown
     require_success(raw->open_file(file.c_str()), file);
     require_sound_sizes(*raw, file);
     const auto& sizes = raw->imgdata.sizes;

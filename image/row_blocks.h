@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How many rows of an image with many planes are held at a time, so that memory does not grow with
-// their number: as many as a number of samples allows, all planes counted, and never more than
-// kMostRows, by which whatever can be shared among threads has been shared.
+// The number of rows in memory of an image with many planes, so that memory does not grow with
+// their number: as many as a number of samples over all planes allows, and at most kMostRows, which
+// are enough to share among threads.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A TIFF file as libtiff opens it to be read, with what libtiff says of it kept instead of printed.
+// A TIFF file opened by libtiff for reading, with libtiff's messages kept instead of printed.
 //
-// Header alone, for the part that is loaded at run time has it, too.
+// Header only, since the part loaded at run time also uses it.
 #pragma once
 
 #include "base/printable.h"
@@ -22,8 +22,8 @@
 namespace aphotic {
 
 struct SaidOfTiff {
-    std::string error;              // the first
-    bool has_false_counts = false;  // of bytes, in place of which it made up others
+    std::string error;              // the first message
+    bool has_false_counts = false;  // of bytes, which libtiff replaced by estimates
 };
 
 struct CloseTiff {
@@ -49,7 +49,7 @@ inline int note_tiff_warning(
     return 1;
 }
 
-// Null when it cannot be. `said` must outlive it; mode: TIFFOpen's.
+// Null if it cannot be opened. `said` must outlive it; mode: TIFFOpen's.
 inline TiffHandle open_tiff(const std::filesystem::path& file, const char* mode, SaidOfTiff& said) {
     constexpr auto kMost_bytes = static_cast<tmsize_t>(256 * kMebi);
     const std::unique_ptr<TIFFOpenOptions, decltype(&::TIFFOpenOptionsFree)> options(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which images the reference tracer made, and not POV-Ray: it says so in the text attribute
-// aphotic:renderer of its OpenEXR images. Held against the reference, they would be held against
+// Detects images made by the reference tracer instead of POV-Ray, from the text attribute
+// aphotic:renderer of its OpenEXR images. Compared with the reference, they would be compared with
 // themselves.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace aphotic {
 inline constexpr const char* kRendererAttribute = "aphotic:renderer";
 inline constexpr const char* kReferenceTracer = "reference tracer";
 
-// False if there is no such file or it cannot be read: reporting that is up to others.
+// False if there is no such file or it cannot be read, which others report.
 [[nodiscard]] bool is_traced(const std::filesystem::path& image);
 
 }  // namespace aphotic

@@ -25,7 +25,7 @@ class Directory {
   public:
     explicit Directory(const std::filesystem::path& file)
         : size_(std::filesystem::file_size(file)) {
-        // Not mapped, strips as they are stored, their places when they are asked for.
+        // Not mapped, strips as stored, their places read on demand.
         tiff_ = open_tiff(file, "rmcO", said_);
         require_no_error();
     }
@@ -163,7 +163,7 @@ void require_whole_tiff(const std::filesystem::path& file) {
 }
 
 void require_sound_streams(const std::filesystem::path& file) {
-    // zlib streams: Adobe's deflate, its old number, and Pixar's log encoding.
+    // The zlib streams: Adobe's deflate, its old number, and Pixar's log encoding.
     constexpr std::array<std::uint64_t, 3> kDeflated{
         COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_PIXARLOG};
     constexpr std::uint64_t kMostTimes = 2;  // Pixar's samples have 16 bits, whatever the image's

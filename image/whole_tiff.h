@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether the pixels of a TIFF file are all in it, by its own directory: libtiff reads the missing
-// rows of one that was cut short as zeros.
+// Checks, by its own directory, that a TIFF file contains all its pixels: libtiff reads the missing
+// rows of a truncated one as zeros.
 //
-// The first directory, as libtiff reads it, tells where each strip or tile begins and how many
-// bytes it has. The file is whole when none that its pixels need is missing or empty and each ends
-// within the file. Of a single strip whose bytes are not told, or too few for its pixels, libtiff
-// makes up how many there are: such a file is refused. Sizes are held to decoded_size.h.
+// The first directory, as libtiff reads it, gives the start and the number of bytes of each strip
+// or tile. The file is whole if none that its pixels need is missing or empty and each ends within
+// the file. For a single strip whose number of bytes is missing, or too small for its pixels,
+// libtiff estimates it: such a file is refused. Sizes are limited by decoded_size.h.
 //
-// Where strips or tiles are deflated, each ends with a checksum of its bytes, Adler-32. libtiff
-// stops at the last pixel, and OpenImageIO 2.4 takes a strip that does not unpack for one of zeros:
-// so the streams are unpacked here, to see.
+// If strips or tiles are deflated, each ends with a checksum of its bytes, Adler-32. libtiff stops
+// at the last pixel, and OpenImageIO 2.4 treats a strip that does not unpack as zeros, so the
+// streams are unpacked here as a check.
 #pragma once
 
 #include <filesystem>
