@@ -59,7 +59,7 @@ struct WrittenImage {
     Compression compression = Compression::Fast;
     std::string description{};
     std::string
-        date_time{};    // empty: unknown. Never the current time: equal images give equal files
+        date_time{};    // empty: unknown. Never the current time: equal images make identical files
     SharedTags tags{};  // the source file's; for TIFF, PNG and JPEG
     bool is_srgb = false;   // the samples are encoded as sRGB, as stated in the file
     int jpeg_quality = 95;  // 1 to 100; chroma is not subsampled
