@@ -29,7 +29,8 @@ namespace {
 
 constexpr auto kReportInterval = std::chrono::milliseconds(250);
 
-// The image while it is rendered. POV-Ray keeps its state next to it, and leaves that when stopped.
+// The image during rendering. POV-Ray keeps its state next to it, and leaves it behind when
+// stopped.
 class PartImage {
   public:
     explicit PartImage(const fs::path& image) : file_(image) {}
@@ -99,8 +100,8 @@ Running start(const PovRay& povray,
     return {.frame = frame, .log = log, .part = std::move(part), .process = std::move(process)};
 }
 
-// The last progress that POV-Ray reported, from the end of its log only: a log that is written
-// faster than it is read has no end.
+// The last progress that POV-Ray reported, from the end of its log only, since a log that is
+// written faster than it is read has no end.
 double reported_share(const fs::path& log) {
     constexpr std::streamoff kTail = 400;
     std::ifstream in(log, std::ios::binary | std::ios::ate);
@@ -123,7 +124,7 @@ void require_success(const Running& run, const ProcessEnd& end) {
                    run.log.string());
 }
 
-// The end of a frame's run, once it has come.
+// The end of a frame's run, if it has ended.
 std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
     try {
         const std::optional<ProcessEnd> end = run.process.poll();
@@ -190,7 +191,7 @@ void run_frames(const PovRay& povray,
             }
             const Running ended = std::move(*run);
             run = running.erase(run);
-            // Start the next one first: the cores need not wait for the check.
+            // Starts the next one first, so that cores do not wait for the check.
             if (started < frames.size()) {
                 running.push_back(start(povray, folder, frames[started++], threads, options));
             }

@@ -7,7 +7,7 @@
 // file. Each frame is rendered under a temporary name, checked (image/frame_check.h) and then
 // renamed. POV-Ray's messages go to DIR/povray/logs/NAME.log.
 //
-// Frames are files, not an animation of one scene: a process costs 0.45 s more than a further frame
+// Frames are files, not an animation of one scene: a process costs 0.45 s more than another frame
 // of an animation, half of it asleep, compared with seconds for a frame of useful size; and a
 // single scene can be read, rendered again, and sent elsewhere.
 #pragma once
@@ -29,7 +29,8 @@ struct FrameProgress {
 };
 
 struct RunOptions {
-    // Frames at a time, and threads for each, so that together they use that many cores.
+    // The number of frames at a time, and threads for each, so that together they use this many
+    // cores.
     int jobs = 1;
     std::function<void(const FrameProgress&)> report{};
     // Called with each image before it is checked: for scenes whose settings request another format
@@ -38,7 +39,7 @@ struct RunOptions {
     // For a user's scene: its folder, in which POV-Ray runs, and its include paths besides the
     // user's own library_paths.
     std::filesystem::path scene_folder{};
-    bool one_at_a_time = false;  // with all threads: the scene reads what it writes
+    bool one_at_a_time = false;  // with all threads, since the scene reads its own files
     std::vector<std::string> library_paths{};
     double stall_s = kStall_s;
     // Called for each frame, in the order in which they end: when its image is complete, before it
@@ -48,9 +49,9 @@ struct RunOptions {
     std::function<void(const ManifestFrame&)> arrived{};
 };
 
-// Renders the frames. If one fails the others are stopped, and a RunError quotes POV-Ray; an
-// interruption throws Interrupted (base/interruption.h). Neither leaves anything of unfinished
-// frames. Images do not depend on jobs.
+// Renders the frames. If one fails, the others are stopped, and a RunError quotes POV-Ray; an
+// interruption throws Interrupted (base/interruption.h). Neither leaves files of unfinished frames.
+// Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,
                 const std::vector<ManifestFrame>& frames,

@@ -25,7 +25,7 @@ std::optional<std::string> variable(const char* name) {
 std::vector<std::string> library_paths_in(const std::string& ini) {
     static const std::regex kLine(R"re(\s*Library_Path\s*=\s*(?:"([^"]*)"|([^;]*?))\s*(;.*)?)re",
                                   std::regex::icase);
-    // No path is longer; and matching a line takes stack for each of its letters.
+    // No path is longer, and matching a line uses stack for each of its letters.
     constexpr std::size_t kMostLetters = 8192;
     std::vector<std::string> paths;
     std::istringstream lines(ini);

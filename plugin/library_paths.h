@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the user's POV-Ray looks for includes: the Library_Path lines of the INI file that it would
-// read by default in this folder. Ours replaces that file and passes them on.
+// The include paths of the user's POV-Ray: the Library_Path lines of the INI file that it would
+// read by default in this folder. Our INI file replaces it and repeats these lines.
 //
 // As POV-Ray 3.7 does: the first found of $POVINI, ./povray.ini, ~/.povray/VERSION/povray.ini and
 // /etc/povray/VERSION/povray.ini.

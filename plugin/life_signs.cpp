@@ -18,7 +18,7 @@ namespace {
 constexpr double kLooks = 8.0;
 
 struct Stat {
-    char state = ' ';  // R: it runs, or would if a processor were free
+    char state = ' ';  // R: running, or ready to run
     pid_t group = 0;
     std::uintmax_t ticks = 0;
 };

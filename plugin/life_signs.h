@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether a program still works, by two signs that keep changing while it does: its output, and the
-// processor time of its process group.
+// Detects whether a program still works, by two signs that change while it does: its output, and
+// the processor time of its process group.
 //
 // Time is counted in checks, not by a clock: while the machine sleeps, or we are stopped, the
-// program has no time either.
+// program does not run either.
 #pragma once
 
 #include <sys/types.h>
@@ -14,11 +14,11 @@
 
 namespace aphotic {
 
-// For the living processes of a group.
+// The totals of a group's living processes.
 struct ProcessorUse {
     std::uintmax_t ticks = 0;  // clock ticks of processor time
-    double waited_s = 0.0;     // that their threads were ready but did not run
-    bool is_ready = false;     // one of their threads runs, or would if a processor were free
+    double waited_s = 0.0;     // time for which their threads were ready but did not run
+    bool is_ready = false;     // one of their threads runs or is ready to run
 };
 [[nodiscard]] ProcessorUse processor_use_of(pid_t group);
 
@@ -27,7 +27,7 @@ class LifeSigns {
     // group: a process group's number.
     LifeSigns(pid_t group, double patience_s);
 
-    // Call often. True if nothing has changed for patience_s in which it could have, or up to an
+    // Call often. True if there was no change for patience_s in which it was possible, or up to an
     // eighth more.
     [[nodiscard]] bool are_gone(std::uintmax_t written_bytes);
 

@@ -87,8 +87,8 @@ bool lists_openexr(std::string_view printed) {
 }  // namespace
 
 PovRay povray_from(std::string_view printed) {
-    // It identifies itself first, after a complaint or two; a program that prints without end is
-    // not POV-Ray.
+    // It identifies itself at the start, after one or two complaints; a program that prints
+    // endlessly is not POV-Ray.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
     const std::optional<Version> version = introduced_version(std::string(printed));

@@ -17,12 +17,10 @@ namespace aphotic {
 // Its messages, one per entry, unwrapped.
 [[nodiscard]] std::vector<std::string> statements_in_log(const std::string& log);
 
-// What it says went wrong: the error with its file and line. Only the first few errors if there are
-// many.
+// POV-Ray's error with its file and line. Only the first few errors if there are many.
 [[nodiscard]] std::string error_in_log(const std::string& log);
 
-// The last progress that it reports, from 0 to 1: "(27%)". 0 if it reports none, or an impossible
-// one.
+// The last progress reported, from 0 to 1: "(27%)". 0 if there is none, or an impossible one.
 [[nodiscard]] double share_in_log(std::string_view log);
 
 }  // namespace aphotic

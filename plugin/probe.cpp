@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What the scene asked for, as reported by aphotic.inc.
+// The scene's requests, as reported by aphotic.inc.
 struct Asked {
     std::set<std::string> reflectances;
     std::set<std::string> lamps;
@@ -44,8 +44,8 @@ struct Asked {
     bool has_other_camera = false;
     bool has_port = false;
     int strobes = 0;
-    int lights = 0;      // of ours, as it is called for them
-    int all_lights = 0;  // as POV-Ray counts them
+    int lights = 0;      // ours, from the macros' calls
+    int all_lights = 0;  // as counted by POV-Ray
     // From its statistics.
     bool has_radiosity = false;
     bool has_photons = false;
@@ -60,22 +60,22 @@ struct Picture {
 // Runs of POV-Ray besides those for each strobe.
 constexpr std::size_t kOnceForAll = 2;
 
-// Pixels that half floats cannot hold are measured again with this much less light.
+// Pixels beyond half floats are measured again with this much less light.
 constexpr int kMostTries = 8;
 constexpr int kLessLightLog2 = 10;
 
 // The number of strobes' pixels that an attempt left without a path or brightness, and why.
 struct Unmeasured {
     std::size_t too_bright = 0;  // for half floats
-    std::size_t too_far = 0;     // for the loss that was tried
-    std::size_t too_near = 0;    // the loss hardly shows
+    std::size_t too_far = 0;     // for the loss tried
+    std::size_t too_near = 0;    // the loss has too little effect
     std::size_t too_faint = 0;   // for half floats
 
     [[nodiscard]] std::size_t not_faint() const { return too_bright + too_far + too_near; }
     [[nodiscard]] std::size_t count() const { return not_faint() + too_faint; }
 };
 
-// The files in a scene's folder, and when each was written.
+// The files in a scene's folder, and the time when each was written.
 std::map<fs::path, fs::file_time_type> written_files(const fs::path& folder) {
     std::map<fs::path, fs::file_time_type> files;
     std::error_code ignored;
@@ -141,7 +141,7 @@ class SceneProbe {
         require_light_of_ours();
         measure(asked.strobes);
         require_unchanged(scene_.file, scene_.files_digest);
-        // Changes that no listing of files finds show in the pictures.
+        // Changes that no listing of files finds are visible in the pictures.
         scene_.digest = sha256_of_text(scene_.files_digest + sha256_of_text(measured_));
         return std::move(scene_);
     }
@@ -185,8 +185,7 @@ class SceneProbe {
         }
     }
 
-    // --- Running POV-Ray
-    // ----------------------------------------------------------------------------
+    // --- Running POV-Ray ------------------------------------------------------------------------
 
     [[nodiscard]] ProcessRequest request_for(const Task& task) const {
         std::vector<std::string> arguments{path_option("+I", file_of(task, ".pov")),
@@ -210,8 +209,8 @@ class SceneProbe {
                 .stall_s = options_.stall_s};
     }
 
-    // POV-Ray's messages without the files that will be gone: the includes, and the lines around
-    // the scene, where it detects what the scene leaves open.
+    // POV-Ray's messages without temporary files: the includes, and the lines around the scene,
+    // where it detects unclosed parts of the scene.
     [[nodiscard]] std::string in_users_files(std::string said, const Task& task) const {
         const std::string around = fmt::format("File '{}' line ", file_of(task, ".pov").string());
         const std::string scene = scene_.file.filename().string();
@@ -238,7 +237,7 @@ class SceneProbe {
                         said.c_str(),
                         more.c_str());
         };
-        // The scene's fault if the parser says so, POV-Ray's otherwise.
+        // The scene's fault if the parser reports it, POV-Ray's otherwise.
         if (said.find("Parse Error") != std::string::npos) fail.operator()<InputError>("");
         fail.operator()<RunError>(words_of_full_disk(folder_.path()));
     }
@@ -295,8 +294,7 @@ class SceneProbe {
         return {.red = plane(0), .green = plane(1), .blue = plane(2)};
     }
 
-    // --- What the scene asks for
-    // --------------------------------------------------------------------
+    // --- The scene's requests -------------------------------------------------------------------
 
     // All strobes on, in clear water.
     [[nodiscard]] Task plain_task() const {
@@ -312,7 +310,8 @@ class SceneProbe {
         scene_.writes_files |= written_files(folder) != before;
         const std::string digest = digest_of_scene(scene_.file);
         if (digest != scene_.files_digest) {
-            // It wrote a file that it names. Now that the file exists, it is in its final state.
+            // It wrote a file that it names. Now that this file exists, the scene is in its final
+            // state.
             scene_.files_digest = digest;
             run_tasks({task});
         }
@@ -394,8 +393,7 @@ class SceneProbe {
         }
     }
 
-    // --- What its light is
-    // --------------------------------------------------------------------------
+    // --- The scene's light ----------------------------------------------------------------------
 
     // POV-Ray ignores the water between surfaces, and draws samples where it gathers light.
     void require_what_is_bounded(const Asked& asked) {
@@ -417,8 +415,8 @@ class SceneProbe {
     }
 
     // In one frame: with all strobes off, nothing may be bright in green and blue; with water on
-    // the camera's leg only, red must be attenuated. So little water that only light from beyond
-    // all water, such as a sky, is lost.
+    // the camera's leg only, red must be attenuated. The water is so thin that only light from
+    // beyond all water, such as a sky, is lost.
     void require_light_of_ours() {
         constexpr double kLittle = 0x1p-4;
         const double K_per_m = has_water_ ? kLittle * attenuation_per_m_ : 0.0;
@@ -500,11 +498,11 @@ class SceneProbe {
         return true;
     }
 
-    // Fills in what is not known yet of each pixel, and counts the rest.
+    // Fills in the unknown values of each pixel, and counts those that remain unknown.
     void take_in(const Picture& picture, const ProbeFrame& frame, Lit& lit, Unmeasured& left) {
-        constexpr double kLeastNormal = 0x1p-14;      // of half floats: under it they lose digits
+        constexpr double kLeastNormal = 0x1p-14;      // below it half floats lose digits
         constexpr double kLeastThatCounts = 0x1p-20;  // 1e-8 of the intended peak
-        constexpr double kLeastLoss = 0x1p-5;         // gives the path to 3 % with half floats
+        constexpr double kLeastLoss = 0x1p-5;         // determines the path to 3 % with half floats
         const auto& [little_per_m, loss_per_m, gain_per_m] = frame.attenuation_per_m;
         for (std::size_t i = 0; i < lit.size(); ++i) {
             const double bare = picture.red[i];
@@ -545,14 +543,13 @@ class SceneProbe {
         }
     }
 
-    // A strobe is measured again with less or more light where pixels were brighter or fainter than
-    // half floats hold, or with another loss where their paths were too long or short for the one
-    // tried.
+    // A strobe is measured again with less or more light if pixels were too bright or faint for
+    // half floats, or with another loss if their paths were too long or short for the one tried.
     void measure(int strobes) {
         constexpr double kLessLoss = 8.0;
         constexpr double kMoreLoss = 32.0;
-        // Attenuates what is in view by less than half floats show, and removes what is behind all
-        // water.
+        // Attenuates objects in view by less than half floats resolve, and removes light from
+        // behind all water.
         constexpr double kLittleLoss = 0x1p-10;
         std::vector<Lit> lit(
             static_cast<std::size_t>(strobes),
@@ -608,7 +605,7 @@ class SceneProbe {
         put_together(lit);
     }
 
-    // If there is no promise anyway, it voids the promise too.
+    // If there is no promise anyway, this also voids it.
     void require_no_dry_light(std::size_t pixels) {
         const std::string what =
             fmt::format("light that passes through no water, in {} of {} pixels",
@@ -651,7 +648,7 @@ class SceneProbe {
     bool has_radiosity_ = false;  // unchecked
     bool is_any_measured_ = false;
     std::size_t tasks_done_ = 0;
-    std::size_t tasks_known_ = 0;  // with those to come, as far as is known
+    std::size_t tasks_known_ = 0;  // including pending ones, as far as known
 };
 
 }  // namespace

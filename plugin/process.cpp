@@ -26,8 +26,8 @@ namespace bp = boost::process;
 
 namespace {
 
-// POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL. It has its own process
-// group, so that whatever it starts can be stopped with it.
+// POV-Ray must not outlive us, however we end, so the kernel sends it SIGKILL. It has its own
+// process group, so that its children can be stopped with it.
 struct DieWithParent : bp::extend::handler {
     template <typename Executor>
     void on_exec_setup(Executor&) const {
@@ -80,7 +80,7 @@ struct Process::Child {
         : pid(leader), request(std::move(what)), life_signs(pid, request.stall_s) {}
 
     InterruptionHold hold;
-    pid_t pid;  // and its group's number
+    pid_t pid;  // also its group's number
     ProcessRequest request;
     LifeSigns life_signs;
     std::optional<ProcessEnd> end;

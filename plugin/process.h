@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A child program: no shell, no input, output to a file, gone when we are gone.
+// A child program: no shell, no input, output to a file, ended when we end.
 //
-// It leads its own process group, so that whatever it starts (POV-Ray, if it is a wrapper script)
-// is gone with it. One limit: if we are killed by SIGKILL, the kernel kills the program for us, but
-// not the program's children.
+// It leads its own process group, so that its children (POV-Ray, if it is a wrapper script) end
+// with it. One limit: if we are killed by SIGKILL, the kernel kills the program for us, but not the
+// program's children.
 //
-// It is not trusted to end: one that prints more than its log may hold, or shows no sign of life,
-// is stopped.
+// It may not end by itself: a program that prints more than its log's limit, or shows no sign of
+// life, is stopped.
 #pragma once
 
 #include <chrono>
@@ -31,11 +31,12 @@ inline constexpr auto kPollInterval = std::chrono::milliseconds(20);
 struct ProcessRequest {
     std::filesystem::path executable;
     std::vector<std::string> arguments;
-    std::filesystem::path folder;                      // where it runs
+    std::filesystem::path folder;                      // its working directory
     std::map<std::string, std::string> environment{};  // added to ours; "" removes a variable
     std::filesystem::path log;                         // takes its stdout and stderr
     std::filesystem::path output{};                    // takes its stdout instead; empty: the log
-    // How long it, with its children, may neither write to its log nor use the processor.
+    // The longest time in which it, with its children, may neither write to its log nor use the
+    // processor.
     double stall_s = std::numeric_limits<double>::infinity();
     std::uintmax_t most_log_bytes = kMostLogBytes;
 };
@@ -57,7 +58,7 @@ class Process {
     Process(Process&&) noexcept;
     Process& operator=(Process&&) noexcept;
 
-    // Does not wait. Throws RunError, which says why, if it exceeds its limits.
+    // Does not wait. Throws RunError, with the reason, if it exceeds its limits.
     [[nodiscard]] std::optional<ProcessEnd> poll();
 
   private:

@@ -48,7 +48,7 @@ bool is_whole(const fs::path& image, const Manifest& wanted) {
     }
 }
 
-// The same scene, rendered before, with its image as recorded.
+// Whether the same scene was rendered before, and its image is as recorded.
 bool still_holds(const fs::path& folder,
                  const ManifestFrame& earlier,
                  const ManifestFrame& wanted,
@@ -77,7 +77,7 @@ void take_away(const fs::path& file) {
     }
 }
 
-// The reference tracer's, which next to a manifest would be taken for the render's.
+// Removes the reference tracer's images, which next to a manifest would be taken for the render's.
 void take_away_a_trace(const fs::path& folder) {
     if (!is_traced(folder / "image.exr") && !is_traced(folder / "spectral.exr")) return;
     for (const char* file : {"trace.json", "preview.png", "spectral.exr", "image.exr"})
@@ -110,7 +110,7 @@ void take_away_what_is_past(const fs::path& folder,
 struct OwnScene {
     fs::path file{};  // absolute; empty: the rig's floor
     std::string digest{};
-    bool is_alone = false;  // no two frames at a time
+    bool is_alone = false;  // one frame at a time
 };
 
 // Renders these, and records each in the manifest when it is done.
@@ -124,7 +124,7 @@ void run_noted(const PovRay& povray,
     run.scene_folder = scene.file.parent_path();
     run.one_at_a_time = scene.is_alone;
     if (manifest.png) {
-        // A fog's light ends at 1: where nothing is in view, it is white.
+        // A fog's light is limited to 1: without a surface in view, it is white.
         const bool has_fog = manifest.veil && manifest.veil->fog_m > 0.0;
         run.convert = [has_fog, fog = manifest.frames.back().name](const ManifestFrame& frame,
                                                                    const fs::path& image) {
@@ -133,7 +133,7 @@ void run_noted(const PovRay& povray,
         };
     }
     run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
-        // A frame of a scene that was edited during the render may show either version.
+        // If the scene was edited during the render, a frame may show either version.
         if (!scene.file.empty()) require_unchanged(scene.file, scene.digest);
         for (ManifestFrame& noted : manifest.frames) {
             if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
@@ -157,7 +157,7 @@ void write_scenes_and_note(const fs::path& folder, const SceneSet& set) {
     }
 }
 
-// For scenes that were written before: the digest of then, or frames would show two scenes.
+// For scenes written earlier: the digest must be the same, or frames would show two scenes.
 OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.scene) return {};
     const std::string& file = manifest.scene->file;
@@ -190,8 +190,8 @@ void copy_scenes(const fs::path& from,
 
 enum class Frames { ToBeRendered, Done };
 
-// For the bare floor it is known beforehand; otherwise once the frames exist, one of which shows
-// how far each pixel sees.
+// For the bare floor it is computed beforehand; otherwise when the frames exist, one of which shows
+// the distance that each pixel sees.
 void note_veil(
     const fs::path& folder, const SceneSet& set, Frames frames, int threads, Manifest& manifest) {
     if (!set.scattering) return;

@@ -7,11 +7,11 @@
 // rendered. File times are ignored. The manifest is rewritten after each frame, so that an
 // interruption costs only the unfinished frames.
 //
-// Other frames of an earlier run, and images made from them, are removed: they could not be used
-// again, only be mistaken for this rig's. So are the reference tracer's images.
+// Other frames of an earlier run, and images made from them, are removed: they could not be reused,
+// but could be mistaken for this rig's. So are the reference tracer's images.
 //
-// If a user's scene is edited meanwhile, the render ends: no frame of the edited scene is recorded,
-// and those recorded before belong to the old scene, so the next run renders them again.
+// If a user's scene is edited during the render, the render ends: no frame of the edited scene is
+// recorded, and those recorded before belong to the old scene, so the next run renders them again.
 #pragma once
 
 #include "base/work_folder.h"
@@ -25,12 +25,12 @@
 namespace aphotic {
 
 struct RenderResult {
-    Manifest manifest;  // every frame done
+    Manifest manifest;  // with every frame done
     std::size_t rendered = 0;
     std::size_t kept = 0;
 };
 
-// An unreadable manifest in the folder is an InputError, and nothing is touched: it might be
+// An unreadable manifest in the folder is an InputError, and no file is changed: it might be
 // another program's, or record hours of frames.
 RenderResult render(const PovRay& povray,
                     const std::filesystem::path& folder,
@@ -38,15 +38,15 @@ RenderResult render(const PovRay& povray,
                     const RunOptions& options);
 
 // A share (base/work_folder.h) of the frames of a folder whose scenes exist, from render() or
-// generate(): into its own folder, without images. Frames that the folder has stay there. The
-// folder itself is only read: for a user's scene, options name the includes.
+// generate(): into its own folder, without images. Frames that the folder already has are not
+// rendered again. The folder itself is only read: for a user's scene, options name the includes.
 RenderResult render_share(const PovRay& povray,
                           const std::filesystem::path& folder,
                           WorkShare share,
                           const RunOptions& options);
 
 // Moves the frames that shares left below the folder, if they are of its scenes, into it and its
-// manifest; render() does so by itself. Returns their number. An InputError if frames are from
+// manifest; render() also does this. Returns their number. An InputError if frames are from
 // different versions of POV-Ray.
 std::size_t join_frames(const std::filesystem::path& folder);
 

@@ -11,7 +11,7 @@ namespace aphotic {
 
 class ScratchFolder {
   public:
-    // Throws RunError if none can be made.
+    // Throws RunError if it cannot be made.
     ScratchFolder();
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;

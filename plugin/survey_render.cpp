@@ -35,7 +35,7 @@ std::string with_declarations(std::string scene, const std::string& declarations
     return scene.insert(at + version.size(), declarations);
 }
 
-// A picture whose frames are being rendered. Their names begin with its number.
+// A picture whose frames are in progress. Their names begin with its number.
 struct PictureUnderWay {
     fs::path image;
     SceneSet scenes;
@@ -61,7 +61,8 @@ PictureUnderWay begun(const fs::path& folder,
     return under_way;
 }
 
-// An interruption leaves the frames, or the image and some of the frames: never part of one.
+// An interruption leaves the frames, or the image and some of the frames, but never part of an
+// image.
 void integrate_picture(const fs::path& folder, int threads, PictureUnderWay& picture) {
     const fs::path made = folder / (picture.image.stem().string() + ".made");
     Manifest& manifest = picture.scenes.manifest;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The images of a simulated survey, by POV-Ray: one plan for all frames, and the scene of each
-// image at its own pose. An image thus costs only its frames; `aphotic render` for each would probe
-// a user's scene many times.
+// image at its own pose. An image thus costs only its frames; separate runs of `aphotic render`
+// would probe a user's scene many times.
 //
 // A user's scene places itself below the sled. It is preceded by the values that differ from image
 // to image, with all digits:
 //
-//   Survey_Image      from 1 on          Survey_Pitch   degrees, bow up
+//   Survey_Image      counted from 1     Survey_Pitch   degrees, bow up
 //   Survey_Seed       of 31 bits         Survey_Roll    degrees, starboard down
 //   Survey_Altitude   metres, along the camera's axis
 //
@@ -30,33 +30,34 @@ struct SurveyPicture {
     int number = 0;  // unique
     std::uint32_t seed = 0;
     Sled sled{};
-    std::filesystem::path image{};  // where the camera's signal goes: float R, G, B
+    std::filesystem::path image{};  // the file of the camera's signal: float R, G, B
 };
 
-// Declarations in POV-Ray's language, of the picture and of these, such as Floor="card".
+// Declarations in POV-Ray's language, of the picture's values and of these, such as Floor="card".
 [[nodiscard]] std::string declarations(const SurveyPicture& picture,
                                        const std::vector<std::string>& declared);
 
-// The numbers among these, as POV-Ray's settings need them, NAME=NUMBER: for the probe of a scene.
+// The numbers among these, in the form of POV-Ray's settings, NAME=NUMBER: for the probe of a
+// scene.
 [[nodiscard]] std::vector<std::string> declared_numbers(const SurveyPicture& picture,
                                                         const std::vector<std::string>& declared);
 
 // From "Floor=\"card\"" or "Depth = 2"; otherwise an InputError.
 void require_declaration(const std::string& declared);
 
-// The paths of light to what any of these sleds sees of the rig's floor and objects. A user's scene
-// may be kRelief closer.
+// The paths of light to the parts of the rig's floor and objects that any of these sleds sees. A
+// user's scene may be kRelief closer.
 [[nodiscard]] PathRange paths_of_poses(Rig rig, const std::vector<Sled>& sleds, bool has_scene);
 inline constexpr double kRelief = 0.9;
 
 struct SurveyRender {
     Rig rig;
-    RenderPlan plan;  // serves the paths of all poses
+    RenderPlan plan;  // for the paths of all poses
     std::vector<std::string> declared{};
 };
 
 // Renders and integrates those whose image does not exist yet; an existing image is complete.
-// Frames are removed once their image is made. folder: for the scenes.
+// Frames are removed when their image is complete. folder: for the scenes.
 void render_pictures(const PovRay& povray,
                      const std::filesystem::path& folder,
                      const SurveyRender& render,
