@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 constexpr std::string_view kMinus = "−";                   // U+2212
-constexpr std::string_view kTimes = "\xC2\xA0×\xC2\xA0";   // between blanks that do not break
-constexpr std::string_view kNarrowBlank = "\xE2\x80\xAF";  // U+202F, does not break
+constexpr std::string_view kTimes = "\xC2\xA0×\xC2\xA0";   // between non-breaking blanks
+constexpr std::string_view kNarrowBlank = "\xE2\x80\xAF";  // U+202F, non-breaking
 
 std::string with_minus(const std::string& number) {
     return number.starts_with('-') ? std::string(kMinus) + number.substr(1) : number;

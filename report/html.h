@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Text and numbers as pages and plots show them.
+// Text and numbers in the form used by pages and plots.
 //
 //   escaped("a < \"b\"")   a &lt; &quot;b&quot;
 //   scientific(4.6e-4)     4.60 × 10⁻⁴
@@ -13,11 +13,11 @@
 
 namespace aphotic {
 
-// Safe between tags and in quoted attributes, in HTML and in XML. Line breaks and tabs become
-// blanks; other control characters, which XML does not allow, become U+FFFD.
+// Escaped for use between tags and in quoted attributes, in HTML and in XML. Line breaks and tabs
+// become blanks; other control characters, which XML does not allow, become U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-// Three significant digits; 0, ∞ and "not a number" in words. 0.01 up to 1000 without a power.
+// Three significant digits; 0, ∞ and "not a number" in words. No power from 0.01 up to 1000.
 [[nodiscard]] std::string scientific(double value);
 
 // The exponent of a number in fmt's {:e}: 3 for "1.5e+03".

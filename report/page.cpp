@@ -154,7 +154,7 @@ std::string small_drawing(std::string_view style, int width, std::string_view el
 }  // namespace
 
 std::string named(std::string_view text) {
-    // First strong isolate to pop directional isolate, U+2068 and U+2069, which no name may end.
+    // First strong isolate to pop directional isolate, U+2068 and U+2069; a name must not end it.
     constexpr std::string_view kIsolate = "\xE2\x81\xA8";
     constexpr std::string_view kPop = "\xE2\x81\xA9";
     std::string inner(text);

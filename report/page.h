@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A page for people as plain data: what it says at its head, warnings, sections of text, tables,
-// figures and plots, and who made it. Only page_html() makes markup of it.
+// A page for people as plain data: its heading, warnings, sections of text, tables, figures and
+// plots, and its origin. Only page_html() converts it to markup.
 //
-// All text is plain, and may hold anything: it is escaped here. Drawings are <svg> as svg.h and
-// plot.h write it, which escape their own labels. Names that users chose are named() within a
-// sentence, so that their direction of writing does not spill over.
+// All text is plain, with arbitrary characters, and is escaped here. Drawings are <svg> as written
+// by svg.h and plot.h, which escape their own labels. Names chosen by users are named() within a
+// sentence, so that their direction of writing does not affect it.
 #pragma once
 
 #include "report/picture.h"
@@ -36,14 +36,14 @@ struct PageTable {
     std::vector<PageRow> rows{};
 };
 
-// Terms and what they mean.
+// Terms and their meanings.
 using PageList = std::vector<std::pair<std::string, std::string>>;
 
 struct PagePicture {
     std::string bytes{};
     int width_px = 0;
     int height_px = 0;
-    std::string words{};  // for those who do not see it
+    std::string words{};  // for readers who do not see it
     std::string_view type = kPng;
     std::optional<std::pair<double, double>> ring{};  // around this share of its width and height
 };
@@ -64,15 +64,15 @@ struct PagePlot {
     std::string svg{};
 };
 
-// The key of a plot or a map: drawings or characters, and words.
+// The key of a plot or a map: drawings or characters, and their meanings.
 struct PageKey {
-    std::string svg{};  // from stroke_key() and its like, or a character
+    std::string svg{};  // from stroke_key() and similar functions, or a character
     std::string words{};
 };
 using PageLegend = std::vector<PageKey>;
 
-[[nodiscard]] PageKey stroke_key(std::string_view style, std::string words);  // as svg.h's styles
-[[nodiscard]] PageKey tone_key(std::size_t tone, std::string words);  // a curve of that tone
+[[nodiscard]] PageKey stroke_key(std::string_view style, std::string words);  // style: as in svg.h
+[[nodiscard]] PageKey tone_key(std::size_t tone, std::string words);  // a curve of this tone
 [[nodiscard]] PageKey dot_key(std::size_t tone, std::string words);
 [[nodiscard]] PageKey swatch_key(std::uint32_t colour, std::string words);  // 0xRRGGBB
 
@@ -80,7 +80,7 @@ struct PageHeading {
     std::string text{};
 };
 
-// Lines as they are, such as a rig's.
+// Preformatted lines, such as a rig's.
 struct PageSource {
     std::string text{};
 };
@@ -106,14 +106,14 @@ struct Page {
     std::string title{};  // of the window; the heading if empty
     std::string heading{};
     bool is_good = true;              // green or red
-    std::string headline{};           // the answer in a sentence
-    std::vector<std::string> said{};  // more on it
+    std::string headline{};           // the result in a sentence
+    std::vector<std::string> said{};  // further sentences
     std::vector<std::string> warnings{};
     std::vector<PageSection> sections{};  // those without parts are omitted
 };
 
-// The origin shown on a program's pages: set once, before its first page. Pages of a library's own
-// caller show nothing.
+// The origin shown on a program's pages: set once, before its first page. Pages made by callers of
+// the library show none.
 struct PageOrigin {
     std::string command{};  // line
     std::string version{};
@@ -121,7 +121,7 @@ struct PageOrigin {
 };
 void set_page_origin(PageOrigin origin);
 
-// A self-contained file, well-formed as HTML and as XML, which a browser lets neither run nor fetch
+// A self-contained file, well-formed as HTML and as XML, which a browser forbids to run or fetch
 // anything. The same page and origin give the same bytes.
 [[nodiscard]] std::string page_html(const Page& page);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How pages and plots look: svg.css and page.css, which travel inside the library. Plots stand in
-// pages and as files by themselves, which not only browsers draw: svg.css keeps to what every
-// reader of SVG knows. Pages: on a screen of any width, and on A4 paper.
+// The style of pages and plots: svg.css and page.css, embedded in the library. Plots are part of
+// pages, or files of their own, which are also drawn by programs other than browsers: svg.css uses
+// only features that every SVG reader supports. Pages are for screens of any width, and A4 paper.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ struct StyleSheet {
     std::string_view css;
 };
 
-// Of plots, then of pages.
+// The style of plots, then of pages.
 [[nodiscard]] std::span<const StyleSheet> style_sheets();
 
 }  // namespace aphotic

@@ -10,7 +10,7 @@
 namespace aphotic {
 
 std::string data_uri(std::string_view picture, std::string_view type) {
-    std::vector<unsigned char> base64(4 * ((picture.size() + 2) / 3) + 1);  // and a closing 0
+    std::vector<unsigned char> base64(4 * ((picture.size() + 2) / 3) + 1);  // and a terminating 0
     const int length = EVP_EncodeBlock(base64.data(),
                                        reinterpret_cast<const unsigned char*>(picture.data()),
                                        static_cast<int>(picture.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pictures that travel inside a page.
+// Pictures embedded in a page.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace aphotic {
 inline constexpr std::string_view kPng = "image/png";
 inline constexpr std::string_view kJpeg = "image/jpeg";
 
-// For src="...", from a file's bytes.
+// The value of src="...", from a file's bytes.
 [[nodiscard]] std::string data_uri(std::string_view picture, std::string_view type = kPng);
 
 }  // namespace aphotic

@@ -32,7 +32,7 @@ std::string legend(const Plot& plot, double& top) {
     constexpr double kGap = 8.0;
     constexpr double kFont_px = 13.0;
     std::string svg;
-    double x = kWidth;  // the first label starts a row
+    double x = kWidth;  // makes the first label start a row
     for (const PlotCurve& curve : plot.curves) {
         if (curve.label.empty()) continue;
         const double text_room = kPanelWidth - kSample - kGap;
@@ -113,7 +113,7 @@ std::string named_points(const SvgPanel& panel, const PlotCurve& curve) {
 
 std::string drawing_of(const Plot& plot, double top) {
     constexpr double kTitle_px = 18.0;
-    constexpr double kBold = 1.15;  // as much wider
+    constexpr double kBold = 1.15;  // relative width
     SvgPanel panel = panel_of(plot);
     panel.top = top + kEdge + kTitle_px;
     std::string svg =

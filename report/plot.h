@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Plots of curves over x as an SVG file by itself. Panels stand one above the other in one
-// picture, their frames aligned.
+// Plots of curves over x as an SVG file of its own. Panels are one above the other in one picture,
+// with their frames aligned.
 //
-// x runs from the least to the largest value given. y starts at 0 when the curves come near it.
-// With log_y, points at or below 0 are left out and the line is broken there. Points that are not
-// finite are left out likewise.
+// x extends from the least to the largest value given. y starts at 0 if the curves come near it.
+// With log_y, points at or below 0 are omitted and the line is broken there. So are points that are
+// not finite.
 #pragma once
 
 #include <filesystem>
@@ -30,8 +30,8 @@ struct Plot {
     std::string y_label;
     std::vector<PlotCurve> curves;
     bool log_y = false;
-    // A unit is as long in x as in y: the shorter range is widened about its middle. Not with
-    // log_y.
+    // A unit has the same length in x and y: the shorter range is widened about its middle. Not
+    // with log_y.
     bool equal_axes = false;
     // Thin dashed grey lines from bottom to top, behind the curves; none outside the x axis.
     std::vector<double> marks_x = {};
@@ -41,8 +41,8 @@ struct Plot {
 // point can be drawn in one of them.
 [[nodiscard]] std::string plots_svg(std::span<const Plot> panels);
 
-// The same to a file. Throws InputError for an extension other than .svg too; RunError if the file
-// cannot be written. The file is complete or absent.
+// The same to a file. Also throws InputError for an extension other than .svg, and RunError if the
+// file cannot be written. The file is complete or absent.
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file);
 
 }  // namespace aphotic

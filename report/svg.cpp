@@ -28,7 +28,7 @@ double nice_step(double span, int wanted) {
 }
 
 // The common exponent of an axis's numbers, such as -4 for errors of a few 1e-4; 0 for numbers of
-// ordinary size, which are written out.
+// ordinary size, which are written in full.
 int unit_log10_of(double largest) {
     if (!(largest > 0.0)) return 0;
     const int exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));

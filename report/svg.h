@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Parts of a plot in SVG: panels with axes, curves and dots in them. Each function gives the text
-// of some elements; svg_drawing() puts them into one <svg>. svg.css says how they look.
+// Parts of a plot in SVG: panels with axes, curves and dots in them. Each function returns the text
+// of some elements; svg_drawing() combines them in one <svg>. svg.css defines their style.
 //
 // Points that are not finite, or have no logarithm where one is needed, break a curve.
 #pragma once
@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 8> kTones{"#1f61a8",   // blue
                                                         "#db4f9e"};  // pink
 inline constexpr std::array<std::size_t, 3> kChannelTones{1, 2, 0};  // of R, G, B
 
-// An attribute that gives an element this colour; after the last the first follows.
+// An attribute that gives an element this colour; the colours repeat after the last.
 [[nodiscard]] std::string svg_tone(std::size_t tone);
 
 struct SvgTick {
@@ -39,7 +39,7 @@ struct SvgAxis {
     double last = 1.0;
     bool log = false;
     std::vector<SvgTick> ticks{};
-    int unit_log10 = 0;   // the labels omit this power of ten, which the title has
+    int unit_log10 = 0;   // the labels omit this power of ten, which is in the title
     std::string title{};  // without one, the ticks have no labels either
 
     // 0 at first, 1 at last; NaN where the logarithm does not exist.
@@ -52,17 +52,17 @@ struct SvgAxis {
 // Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them.
 [[nodiscard]] SvgAxis linear_axis(double first, double last, int wanted);
 
-// The same from a tick at or below `least` to one at or above `most`; from 0 where that is near.
+// The same from a tick at or below `least` to one at or above `most`; from 0 if that is near.
 [[nodiscard]] SvgAxis linear_axis_around(double least, double most, int wanted);
 
 // From 1, 2 or 5 times a power of ten below `least` to one above `most`; both positive. All ticks
-// are labelled when there are no more than most_labels, else powers of ten.
+// are labelled if there are at most most_labels, else powers of ten.
 [[nodiscard]] SvgAxis log_axis(double least, double most, int most_labels = 7);
 
 // The least of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is at least the value.
 [[nodiscard]] double round_up(double value);
 
-// Of the finite values that were included.
+// The range of the finite values that were included.
 struct ValueRange {
     double least = std::numeric_limits<double>::infinity();
     double most = -std::numeric_limits<double>::infinity();
@@ -88,7 +88,7 @@ struct SvgPanel {
     [[nodiscard]] double bottom() const { return top + height; }
 };
 
-// The least space that titled axes take to the left of the panel, and below it.
+// The least space for titled axes to the left of the panel, and below it.
 inline constexpr double kAxisWidth = 86.0;
 inline constexpr double kAxisHeight = 44.0;
 
@@ -104,7 +104,7 @@ inline constexpr double kAxisHeight = 44.0;
                                    std::span<const double> x,
                                    std::span<const double> y,
                                    std::string_view style);
-// At one y, from side to side.
+// A line at one y, from side to side.
 [[nodiscard]] std::string svg_level(const SvgPanel& panel, double y, std::string_view style);
 
 [[nodiscard]] std::string svg_line(
