@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The libraries as a Python module: rig in, arrays out. What computes gives up the interpreter's
-// lock; what is wrong with the input is said in the command's own words, as aphotic.InputError.
+// The libraries as a Python module: rig in, arrays out. Computations release the interpreter's
+// lock; invalid input is an aphotic.InputError with the command's own message.
 //
-// Images are arrays of rows, columns, channels. Ours are planes one after another, of which such an
-// array is a view: no sample is copied.
+// Images are arrays of rows, columns, channels. Ours are planes one after another, and such an
+// array is a view of them: no sample is copied.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -40,7 +40,7 @@ struct RigLightmap {
 template <typename Sample, std::size_t kDimensions>
 using Array = nb::ndarray<nb::numpy, Sample, nb::ndim<kDimensions>>;
 
-// owner: whose the samples are.
+// owner: the owner of the samples.
 template <typename Sample>
 Array<Sample, 3> image_of_planes(
     Sample* planes, int height_px, int width_px, std::size_t count, nb::handle owner) {
@@ -57,7 +57,7 @@ Array<Sample, 3> image_of_planes(
 // For a property whose array is not a view of the object.
 inline constexpr auto kOwn = nb::rv_policy::automatic;
 
-// A new owner, and where its samples are.
+// A new owner, and its samples.
 template <typename Sample>
 std::pair<Sample*, nb::capsule> owned(std::vector<Sample> samples) {
     auto held = std::make_unique<std::vector<Sample>>(std::move(samples));

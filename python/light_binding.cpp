@@ -139,7 +139,7 @@ RigLightmap lightmap(
     return light;
 }
 
-// Tables once, then a map for any pose and any places of the strobes in milliseconds.
+// Computes tables once, then maps for any pose and any places of the strobes in milliseconds.
 class RigLightmapMaker {
   public:
     RigLightmapMaker(const TextRig& rig,
@@ -191,7 +191,7 @@ class RigLightmapMaker {
     }
 
   private:
-    // Never empty: paths outside a map's tables would silently be black in it.
+    // Never empty, since paths outside a map's tables would silently be black.
     static PathRange paths_for(const Rig& rig, const std::vector<double>& altitudes_m) {
         std::vector<Sled> sleds{rig.sled};
         for (const double altitude_m : altitudes_m) {
@@ -332,7 +332,7 @@ Array<double, 3> traced_radiance(nb::handle self) {
 
 Array<bool, 2> traced_edges(const Traced& traced) {
     auto [data, owner] = owned(traced.on_edges);
-    // 0 or 1, which is what NumPy's bool is.
+    // 0 or 1, as in NumPy's bool.
     return Array<bool, 2>(
         data,
         {static_cast<std::size_t>(traced.height_px), static_cast<std::size_t>(traced.width_px)},

@@ -85,7 +85,7 @@ struct CorrectedArray {
     PerChannel gain{};
 };
 
-// As `aphotic correct` corrects an image of a survey, or of a survey with this image only.
+// The correction of an image as by `aphotic correct`, in a survey or in one with this image only.
 Correction correction_of(const RawImage& raw,
                          const RigLightmap& light,
                          const CorrectOptions& options) {
@@ -211,7 +211,7 @@ struct Fitted {
     std::vector<Skipped> skipped;
 };
 
-// As the command prints it on standard error.
+// In the form that the command prints on standard error.
 void warn_of(const Fitted& fitted) {
     const nb::object warn = nb::module_::import_("warnings").attr("warn");
     for (const Skipped& one : fitted.skipped)
