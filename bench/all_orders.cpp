@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tables of docs/reference/water.md: the model of water that scatters over light of all orders,
-// in waters from clear to harbour, by phase functions, altitudes and beams.
+// The tables of docs/reference/water.md: the ratio of the model for scattering water to light of
+// all orders, in waters from clear to harbour, by phase functions, altitudes and beams.
 //
-//   all_orders [PATHS]        a line a rig, as Markdown, and then a line a cut
+//   all_orders [PATHS]        a line per rig, as Markdown, then a line per cut
 //
-// floor, veil, sum  the model over the truth, in the mean over nine places, and the standard error
+// floor, veil, sum  model over truth, the mean over nine places, and its standard error
 // rms               of the sum's error over the places, less the truth's noise
-// estimate          what `aphotic plan` tells, by kModelPaths
-// cuts              in place of kLossCut: rms of floor's and veil's errors over all rigs of a water
+// estimate          as reported by `aphotic plan`, with kModelPaths
+// cuts              instead of kLossCut: rms of the floor's and veil's errors over a water's rigs
 #include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "validation/model_check.h"
@@ -78,7 +78,7 @@ std::string words(const Over& over) {
     return fmt::format("{:.3f} ± {:.3f}", over.mean, over.noise);
 }
 
-// Of the model with another cut, by water that loses so much more or less.
+// The model with another cut, by changing the water's loss accordingly.
 constexpr std::array<double, 7> kCuts_deg{5, 10, 20, 30, 45, 60, 90};
 
 struct Squares {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// dropout_bench [IMAGES] [SEED]: how often dropouts are told (survey/dropouts.h), and how often
-// where there are none, over simulated surveys: the four strobes of scenes/survey, and of them two
-// at the ends, two beside each other, in turn; images of 340 x 256 mosaics of 12 bits with noise,
-// at poses that instruments tell to 3 cm and half a degree. Floors are sand of 25 % contrast under
-// patches of algae, another in every image and brighter or darker by 22 %; in every tenth a meadow
-// that reflects two fifths begins somewhere in view. Scales are learned from 16 images, as
-// `correct` does. The light is the lightmap's; judged is by the true rig, and by one whose aims are
-// off by 3 degrees and whose powers by 10 %, as a fit begins.
+// dropout_bench [IMAGES] [SEED]: the rates of detected dropouts (survey/dropouts.h) and of false
+// alarms over simulated surveys: the four strobes of scenes/survey, then two of them at the ends,
+// then two beside each other; images of 340 x 256 mosaics of 12 bits with noise, at poses measured
+// to 3 cm and half a degree. Floors are sand of 25 % contrast under patches of algae, different in
+// every image and brighter or darker by 22 %; in every tenth, a meadow that reflects two fifths
+// begins somewhere in view. Scales are learned from 16 images, as `correct` does. The light is the
+// lightmap's; detection uses the true rig, and one whose aims are off by 3 degrees and powers by 10
+// %, as at the start of a fit.
 #include "base/degrees.h"
 #include "base/parallel.h"
 #include "lightmap/design.h"
@@ -70,7 +70,7 @@ Shot shot_of(RandomSource& random, std::size_t strobes) {
     return lot < 0.95 ? Shot{Half, 0, 0.5} : Shot{Tenth, 0, 0.1};
 }
 
-// What the floor reflects, times the rig's, at a pixel's point on the floor [m].
+// The floor's reflectance, relative to the rig's, at a pixel's point on the floor [m].
 class Floor {
   public:
     explicit Floor(RandomSource& random)
@@ -175,8 +175,8 @@ Rig as_a_fit_begins(Rig rig, std::uint64_t seed) {
 
 struct Tally {
     std::size_t images = 0;
-    std::size_t right = 0;  // as it was
-    std::size_t other = 0;  // found, as something else
+    std::size_t right = 0;  // correct
+    std::size_t other = 0;  // found, but as another one
 };
 using Tallies = std::array<Tally, kKinds>;
 

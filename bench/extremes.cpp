@@ -3,8 +3,7 @@
 // The table of extremes as Markdown, row by row: both renderers against long double
 // (docs/background/accuracy.md).
 //
-//   extremes DIR [WIDTH]    of images WIDTH pixels wide, 24 unless said; rigs and images stay in
-//   DIR
+//   extremes DIR [WIDTH]    for images WIDTH pixels wide, default 24; keeps rigs and images in DIR
 #include "support/extremes.h"
 #include "base/number.h"
 

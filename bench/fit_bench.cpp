@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// fit_bench SURVEYS [IMAGES] [SEED]: how well a fit finds the light of random surveys, and whether
-// its errors hold. Their light is the reference's (validation/tracer.h), which shares no code with
-// the fit's: sleds like HabCam with soft beams, a lens of cos^n, powers, aims and water of their
-// own, no two images of the same brightness, at poses that instruments tell to 3 cm and half a
-// degree. Floors are sand, of odd seeds with patches of algae; water is clear, of every third seed
-// it holds chlorophyll (there the light is the lightmap's, for the reference would take hours).
-// Each fit begins with HabCam's three sharp cones, all aims up to 3 degrees amiss, and no
-// vignetting.
+// fit_bench SURVEYS [IMAGES] [SEED]: the accuracy of a fit to the light of random surveys, and of
+// its error estimates. Their light is the reference's (validation/tracer.h), which shares no code
+// with the fit's: sleds like HabCam with soft beams, a lens of cos^n, powers, aims and water of
+// their own, images of different brightness, at poses measured to 3 cm and half a degree. Floors
+// are sand, with patches of algae for odd seeds; water is clear, with chlorophyll for every third
+// seed (there the light is the lightmap's, since the reference would take hours). Each fit begins
+// with HabCam's three sharp cones, all aims off by up to 3 degrees, and no vignetting.
 //
-//   true, fitted   rms of a grey chart's tiles that are corrected by either rig, at the poses that
-//                  the instruments tell, per cent; the chart is the reference's at the true poses
-//   off, said      of the map of light at the flight's poses: its error, rms, and what the fit says
-//   s              of processor
-//   z              what a number is off by over its error; the map's, of its pixels
+//   true, fitted   rms of a grey chart's tiles corrected with either rig, at the measured poses,
+//                  per cent; the chart is the reference's at the true poses
+//   off, said      rms error of the light's map at the flight's poses, and the fit's estimate of it
+//   s              processor time
+//   z              a number's deviation over its estimated error; for the map, of its pixels
 #include "base/degrees.h"
 #include "lightmap/lightmap.h"
 #include "rig/file/rig_text.h"
@@ -106,12 +105,12 @@ struct Survey {
     RigText start;
     Numbers numbers;
     double exponent = 0.0;  // of the lens
-    double water = 0.0;     // multiple, or chlorophyll over the start's
+    double water = 0.0;     // multiple, or chlorophyll relative to the start's
     std::vector<Sled> flown{};
     FitSamples samples{};
 };
 
-// By the reference; where water scatters by the lightmap, for that takes the reference hours.
+// By the reference; in water that scatters by the lightmap, since the reference would take hours.
 CameraImage traced(Rig rig, const Sled& sled, int threads) {
     if (rig.water.scatters())
         return {
@@ -122,7 +121,7 @@ CameraImage traced(Rig rig, const Sled& sled, int threads) {
     return {kWidth, kHeight, {planes.begin(), planes.end()}};
 }
 
-// What the floor reflects, times the rig's, by channel.
+// The floor's reflectance, relative to the rig's, by channel.
 std::array<double, kChannels> floor_at(const FloorTexture& grain,
                                        const FloorTexture* patches,
                                        double x_m,
@@ -135,7 +134,7 @@ std::array<double, kChannels> floor_at(const FloorTexture& grain,
     return floor;
 }
 
-// electrons: of a signal of 1.
+// electrons: those of a signal of 1.
 FitImage photographed(const Survey& survey,
                       double electrons_per_signal,
                       std::size_t i,
@@ -173,7 +172,7 @@ FitImage photographed(const Survey& survey,
         const double pixels = places.block_px * places.block_px;
         for (std::size_t c = 0; c < kChannels; ++c) {
             const double electrons = electrons_per_signal * level * sum[c] / pixels;
-            // Of a mosaic, half of the pixels are green.
+            // Half of a mosaic's pixels are green.
             const double seen = pixels * (c == 1 ? 0.5 : 0.25);
             constexpr double kRead2 = 64.0;
             image.signal.push_back(static_cast<float>(
@@ -237,7 +236,7 @@ Survey drawn(std::uint64_t seed, int images, int threads) {
     return survey;
 }
 
-// Of charts that a rig corrects, at the poses that instruments tell; none: as the camera saw them.
+// The rms of charts corrected with a rig, at the measured poses; without a rig: uncorrected.
 double uneven(const Survey& survey, const std::vector<CameraImage>& charts, const Rig* rig) {
     std::vector<Sled> told;
     for (std::size_t i = 0; i < charts.size(); ++i) told.push_back(survey.samples.images[i].sled);
@@ -277,7 +276,7 @@ double uneven(const Survey& survey, const std::vector<CameraImage>& charts, cons
     return 100.0 * std::sqrt(squares / kChannels);
 }
 
-// Of the logarithm of the fitted map over the true one, by pixel of all channels of the flight.
+// The logarithm of the fitted map over the true one, by pixel of all channels of the flight.
 std::vector<double> off_of(const Survey& survey, const Rig& truth, const Rig& fitted) {
     std::vector<double> off;
     for (std::size_t i = 0; i < std::min<std::size_t>(kCharts, survey.flown.size()); ++i) {
@@ -290,7 +289,7 @@ std::vector<double> off_of(const Survey& survey, const Rig& truth, const Rig& fi
         for (std::size_t k = 0; k < found.size(); ++k)
             off.push_back(std::log(static_cast<double>(found[k]) / static_cast<double>(wanted[k])));
     }
-    // Less each channel's mean, as a floor's level is.
+    // Less each channel's mean, which a floor's level would absorb.
     std::array<double, kChannels> mean{};
     constexpr std::size_t kPixels = static_cast<std::size_t>(kWidth) * kHeight;
     for (std::size_t k = 0; k < off.size(); ++k)

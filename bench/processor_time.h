@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Processor time so far: of this process (RUSAGE_SELF), or of those that it waited for
-// (RUSAGE_CHILDREN). Others on the machine disturb it less than the clock.
+// Processor time so far, of this process (RUSAGE_SELF) or of those that it waited for
+// (RUSAGE_CHILDREN). Other processes on the machine affect it less than wall time.
 #pragma once
 
 #include <sys/resource.h>

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How long the parts of Aphotic take, by the clock and of all threads' processor time, which others
-// on the machine disturb less. The least of many passes is what the machine can do when nobody else
-// is on it. HabCam's 1360 x 1024 pixels, four strobes of three cones, unless the name says
-// otherwise.
+// The time of Aphotic's parts: wall time, and the processor time of all threads, which other
+// processes affect less. The least of many passes is close to the time on an idle machine. HabCam's
+// 1360 x 1024 pixels, four strobes of three cones, unless the name indicates otherwise.
 //
 // Goals: a lightmap at least 300 times as fast as the tracer, at most 15 times as long as filling
 // such an image with a constant, under the 166 ms between two frames of the camera; a plan in under
 // 0.2 s, under 2 s for ten materials over forty metres. A survey's images are corrected by one
-// thread each: its map, division, edges and demosaicing come one after another.
+// thread each: map, division, edges and demosaicing run in sequence.
 #include "lightmap/cone_edge.h"
 #include "lightmap/lightmap.h"
 #include "rig/file/rig_reader.h"
@@ -75,7 +74,8 @@ BENCHMARK_CAPTURE(lightmap, habcam, "habcam", kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, habcam_one_thread, "habcam", 1)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
 
-// HabCam in coastal water, beside the floor's light alone: the veil's goal is ten times as long.
+// HabCam in coastal water, compared with the floor's light alone: the veil's goal is ten times as
+// long.
 
 Rig coast(const std::string& of = "habcam") {
     Rig rig = scene(of);
@@ -116,7 +116,8 @@ void floor_beside_it(benchmark::State& state, const std::string& name) {
 }
 BENCHMARK_CAPTURE(floor_beside_it, smooth, "habcam-led")->Apply(least_of_many);
 
-// The same strobes with other beams, by one thread: over habcam_one_thread, what a kind costs.
+// The same strobes with other beams, by one thread: relative to habcam_one_thread, the cost of a
+// kind.
 
 constexpr BeamWindow kAcrylic{.glass_index = 1.49, .water_index = 1.34};
 
@@ -173,8 +174,8 @@ BENCHMARK_CAPTURE(lightmap_of, table, make_table)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_of, optics, make_optics)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_of, optics_in_air, make_optics_in_air)->Apply(least_of_many);
 
-// HabCam through lenses and ports whose rays have no formula: over habcam_one_thread, and over the
-// flat port beside them.
+// HabCam through lenses and ports whose rays have no formula: relative to habcam_one_thread, and to
+// the flat port next to them.
 
 PortWindow bk7_port() {
     return {.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What `aphotic correct` takes of a survey from disk to disk, beside what reading the same raw
-// images and writing the same corrected ones takes by itself, by the same library, in as many
-// threads and with the same compression. HabCam's mosaics, 5 MP behind a port, and smooth beams in
-// clear water and in Jerlov's 1C, whose veil is subtracted (goal: at most 1.3 times as long). The
-// gain is taken from as many images as by default, 16, each of which is read and mapped once more;
-// of a survey of thousands they count for nothing, as of 1.
+// The time of `aphotic correct` for a survey from disk to disk, compared with only reading the same
+// raw images and writing the same corrected ones, by the same library, in as many threads and with
+// the same compression. HabCam's mosaics, 5 MP behind a port, and smooth beams in clear water and
+// in Jerlov's 1C, whose veil is subtracted (goal: at most 1.3 times as long). The gain is taken
+// from the default number of images, 16, each of which is read and mapped once more; in a survey of
+// thousands their time is as negligible as that of 1.
 //
-// The two numbers behind a name: images and jobs. (Goals: HabCam's six mosaics a second on two
+// The two numbers after a name are images and jobs. (Goals: HabCam's six mosaics a second on two
 // cores; at most twice as long as reading and writing.)
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -60,7 +60,7 @@ void write_image(const fs::path& file, const Image& image, const std::string& co
     OIIO::ImageSpec spec(
         image.spec.width, image.spec.height, image.spec.nchannels, image.spec.format);
     spec.attribute("compression", compression);
-    spec.attribute("tiff:zipquality", 1);  // as `correct` has it by default
+    spec.attribute("tiff:zipquality", 1);  // the default of `correct`
     const auto output = OIIO::ImageOutput::create(file.string());
     output->threads(1);
     if (!output->open(file.string(), spec) ||
@@ -127,7 +127,7 @@ std::string rig_text(const std::string& name) {
     return std::regex_replace(toml, std::regex("\nabsorption *= [^\n]*"), "\ntype = \"jerlov-1C\"");
 }
 
-// In a folder that is gone at the end of the program.
+// In a folder that is removed at the end of the program.
 class Survey {
   public:
     Survey(const std::string& rig, std::size_t images)
@@ -175,7 +175,7 @@ class Survey {
     std::vector<Image> corrected_;
 };
 
-// Made once, whatever is repeated on it.
+// Made once, for all repetitions.
 const Survey& survey_of(const std::string& rig, std::size_t images) {
     static std::map<std::pair<std::string, std::size_t>, Survey> surveys;
     return surveys.try_emplace({rig, images}, rig, images).first->second;

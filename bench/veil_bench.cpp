@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the veil adds to a render in scattering water: the processor time of its planes, written to
-// disk, beside POV-Ray's for the frames, the least of several passes each. (Goal: under a tenth.)
-// Smooth beams, and HabCam's sharp cones, along whose edges the veil is computed pixel by pixel;
-// both in Jerlov's 1C.
+// The cost of the veil in a render in scattering water: the processor time of its planes, written
+// to disk, compared with POV-Ray's for the frames, the least of several passes each. (Goal: under a
+// tenth.) Smooth beams, and HabCam's sharp cones, along whose edges the veil is computed pixel by
+// pixel; both in Jerlov's 1C.
 #include "bench/processor_time.h"
 #include "plugin/frame_runner.h"
 #include "plugin/render.h"

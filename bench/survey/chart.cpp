@@ -14,8 +14,8 @@ namespace {
 // 3e-4 of the light; no material of the scenes is grey to this.
 constexpr double kSameLight = 3e-3;
 
-// Light over a floor bends over many pixels; where a cone ends, it steps from one to the next by at
-// least some percent.
+// Light over a floor varies over many pixels; at the end of a cone, it steps from one to the next
+// by at least a few percent.
 constexpr double kStep = 0.01;
 
 struct Grid {
@@ -59,7 +59,7 @@ Tile tile_of(const CameraImage& truth,
     return all(kLightOverDark) ? Tile::Light : Tile::None;
 }
 
-// Where the card's green bends more than smooth light does, along a row or a column.
+// The pixels where the card's green is more curved than smooth light, along a row or a column.
 std::vector<bool> steps_of(const CameraImage& card, const Grid& grid) {
     std::vector<bool> is_step(grid.pixels(), false);
     const float* green = &card.samples[grid.pixels()];

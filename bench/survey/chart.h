@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a correction made of the grey chart that lies in an image of a simulated survey.
+// The quality of a corrected image of a simulated survey, measured on the grey chart in it.
 //
-// Which pixels show the chart is known from POV-Ray alone, which rendered the same floor as one
-// grey card with nothing on it: where truth over card is 1 in all three channels a pixel is a dark
-// tile, where it is 2.5 a light one, in full light. Shaded tiles and everything else have another
-// ratio. A pixel counts when its eight neighbours are of the same tile, and when no cone of light
-// ends within kEdgeReach_px of it: edges are where a pixel holds two amounts of light.
+// The chart's pixels are found from POV-Ray's images alone, one of which shows the same floor as a
+// bare grey card: if truth over card is 1 in all three channels, a pixel is a dark tile, if it is
+// 2.5, a light one, in full light. Shaded tiles and everything else have another ratio. A pixel
+// counts if its eight neighbours are of the same tile, and if no cone of light ends within
+// kEdgeReach_px of it: pixels on edges mix two levels of light.
 //
 // Of a corrected image C, with M_t the mean of C over the pixels of the tiles of kind t,
 //
@@ -14,7 +14,8 @@
 //   tone         2.5 M_dark / M_light                                   1: contrast is kept
 //   colour       M_light of R over that of G, and of B over that of G
 //
-// Tone tells a correction that makes all things alike from one that takes away the light's pattern.
+// Tone distinguishes a correction that removes all contrast from one that removes the light's
+// pattern.
 #pragma once
 
 #include "image/camera_image.h"
@@ -26,7 +27,7 @@
 
 namespace aphotic::survey {
 
-inline constexpr double kLightOverDark = 2.5;  // of the tiles, as scenes/survey/survey.pov has them
+inline constexpr double kLightOverDark = 2.5;  // of the tiles, as in scenes/survey/survey.pov
 inline constexpr int kEdgeReach_px = 2;
 
 enum class Tile : std::uint8_t { None, Dark, Light };
@@ -43,16 +44,16 @@ struct ChartScore {
 
 [[nodiscard]] ChartScore score_chart(const CameraImage& corrected, std::span<const Tile> tiles);
 
-// Over all images of a survey that have a chart: the rms of the unevenness over images and
-// channels, the mean tone, and how far colour and brightness wander from image to image, as the
-// standard deviation over the mean (of colour the larger of R/G and B/G).
+// Over all images of a survey with a chart: the rms of the unevenness over images and channels, the
+// mean tone, and the variation of colour and brightness from image to image, as the standard
+// deviation over the mean (for colour the larger of R/G and B/G).
 struct SurveyScore {
     double unevenness = 0.0;
     double worst_unevenness = 0.0;  // of an image and channel
     double tone = 0.0;
     double colour_spread = 0.0;
     double level_spread = 0.0;
-    double degrees = 0.0;  // mean over images: of the light tiles' signal from grey
+    double degrees = 0.0;  // mean over images: the light tiles' angle from grey
     std::size_t images = 0;
 };
 

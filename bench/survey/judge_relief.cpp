@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// judge_relief MASKS NAME=DIR ...: how even corrections leave a sea floor with relief that reflects
-// alike everywhere: the rms departure from the survey's median in each channel, over the pixels
-// that are 0 in MASKS, the folder of the correction whose masks count. Files are EXR, by one name
-// in all folders.
+// judge_relief MASKS NAME=DIR ...: the evenness of corrected images of a sea floor with relief and
+// uniform reflectance: the rms deviation from the survey's median in each channel, over the pixels
+// that are 0 in MASKS, the folder of the correction whose masks count. Files are EXR, with the same
+// names in all folders.
 //
-//   --depths DIR --noise SIGMA --write DIR   besides, or instead, depth maps with noise  [m]
+//   --depths DIR --noise SIGMA --write DIR   in addition, or instead, depth maps with noise  [m]
 //   --picture FILE --show IMAGE              the corrections of one image side by side, each with
 //                                            its own exposure and white balance
 #include "base/error.h"

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// judge SURVEY CARD NAME=DIR ...: what corrections made of a simulated survey's grey chart.
+// judge SURVEY CARD NAME=DIR ...: the quality of corrections, from a simulated survey's grey chart.
 //
 // SURVEY is a folder of `aphotic survey`, CARD one of the same poses over the bare grey card, DIR
-// one of corrected images: files by the names of the survey's, whatever their suffix. Prints a
-// table in Markdown, a row for each NAME; --json prints the same as JSON. NAME=SURVEY/truth is the
-// row of no correction at all.
+// one of corrected images: files with the names of the survey's, and any suffix. Prints a table in
+// Markdown, a row for each NAME; --json prints the same as JSON. NAME=SURVEY/truth is the row
+// without correction.
 //
-// --picture FILE puts the images of --show side by side: a row for each of them, a column for
-// each NAME. Every column has one exposure and one white balance, which show the light tiles of its
-// images grey in the mean: what differs within a column differs in the corrected images.
+// --picture FILE shows the images of --show side by side: a row for each of them, a column for each
+// NAME. Every column has one exposure and one white balance, by which the light tiles of its images
+// are grey on average, so differences within a column are those of the corrected images.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "bench/survey/chart.h"
@@ -55,7 +55,7 @@ Correction correction_of(const std::string& words) {
     return {.name = words.substr(0, equals), .folder = words.substr(equals + 1)};
 }
 
-// The image of that name: the first, in the order of the alphabet, that begins with it and is one.
+// The image of that name: the first image, in alphabetical order, whose name begins with it.
 fs::path image_in(const fs::path& folder, const std::string& name) {
     static const std::set<std::string> kSuffixes{".exr", ".png", ".tif", ".tiff"};
     for (const std::string& suffix : kSuffixes) {
@@ -83,7 +83,7 @@ CameraImage read_image(const fs::path& file) {
 // The charts of a survey's first images, by the images' names.
 using Charts = std::map<std::string, std::vector<Tile>>;
 
-// Without a chart some pixels of a floor still look like it.
+// Some pixels of a floor without a chart still resemble it.
 bool has_chart(const std::vector<Tile>& tiles) {
     constexpr double kLeastShare = 0.01;
     const auto some = static_cast<double>(tiles.size()) -
@@ -155,7 +155,7 @@ void print_row(const std::string& name, const SurveyScore& score) {
                score.degrees);
 }
 
-// The light tiles of the shown images are grey of this level in the mean, sand somewhat lighter.
+// The light tiles of the shown images are grey of this level on average, sand somewhat lighter.
 constexpr double kShownGrey = 0.35;
 constexpr std::size_t kGap_px = 6;  // white, between pictures
 
@@ -182,7 +182,7 @@ std::uint32_t shown(const CameraImage& image,
     return colour;
 }
 
-// One column of pictures, put into its place of the sheet.
+// Draws one column of pictures at its place on the sheet.
 void put_column(const std::vector<CameraImage>& images,
                 const std::array<double, kChannels>& scale,
                 std::size_t column,
