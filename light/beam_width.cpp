@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <variant>
 #include <vector>
 
@@ -19,13 +20,19 @@ double least_step(const std::vector<double>& angles_rad) {
     return least;
 }
 
+// A soft edge is even in the cosine.
+double half_lit_rad(const Cone& cone) {
+    if (cone.edge_rad == 0.0) return cone.half_angle_rad;
+    return std::acos(std::midpoint(std::cos(cone.half_angle_rad - cone.edge_rad),
+                                   std::cos(cone.half_angle_rad)));
+}
+
 }  // namespace
 
 double narrowest_rad(const Beam& beam) {
     double narrowest = std::numbers::pi;
     for (const Cone& cone : beam.cones) {
-        narrowest = std::min(
-            {narrowest, 2.0 * cone.half_angle_rad - cone.edge_rad, 2.0 / std::sqrt(cone.exponent)});
+        narrowest = std::min({narrowest, 2.0 * half_lit_rad(cone), 2.0 / std::sqrt(cone.exponent)});
     }
     const bool is_steep = !steep_creases(beam, frame_about(Eigen::Vector3d::UnitZ())).empty();
     if (const auto* table = std::get_if<BeamTable>(&beam.pattern); table != nullptr && is_steep) {

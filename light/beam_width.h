@@ -2,8 +2,8 @@
 //
 // The width of the narrowest light in a beam, which the spacing of samples must not exceed:
 //
-//   a cone               2 gamma - e, twice its half angle less its soft edge: its width at half
-//                        of the light; for a lobe cos^n at most 2 / sqrt(n)
+//   a cone               its width at half of its light, for a sharp one twice its half angle; for
+//                        a lobe cos^n at most 2 / sqrt(n)
 //   a table              two steps of its angles where they are smallest, if one of its lines is
 //                        steep (steep_crease.h): a peak between two neighbours
 //   an image by a lens   the angle of its shorter side

@@ -286,9 +286,9 @@ std::vector<double> best_wavelengths(const QuadratureFitter& fitter,
 FittedRule plan_wavelengths(const QuadratureFitter& fitter,
                             WavelengthRange range,
                             const PlanTarget& target) {
+    constexpr double kLeastShare = 0.01;
     // The part of the error budget that frames leave to the wavelengths, if the weights do not
     // amplify it.
-    constexpr double kLeastShare = 0.01;
     const double budget =
         std::max(kLeastShare * target.frame_error, target.tolerance - target.frame_error);
     const auto at = [&](int count) {

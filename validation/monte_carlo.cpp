@@ -222,7 +222,7 @@ struct MonteCarlo::Path {
         }
     }
 
-    // A path's remaining importance: a random walk at distance D from the lamps returns with a
+    // A path's remaining importance: a random walk at distance D from the pupil returns with a
     // probability of about 1/(c D). Without this, paths in water that absorbs nothing stray for
     // thousands of turns.
     [[nodiscard]] double importance(const Vertex& at) const {

@@ -135,9 +135,9 @@ TEST(VeilMap, IsTheVeilOfEachPixelAboutALampOnTheAxis) {
 double off_by(const Rig& rig,
               const LightmapOptions& options,
               int step,
-              unsigned points = kVeilMapPoints) {
+              std::optional<unsigned> points = {}) {
     const Lightmap map = LightmapMaker(rig, std::nullopt, options).map(rig.sled);
-    const VeilMap exact(rig, path_range(rig), 1e-5, points);
+    const VeilMap exact(rig, path_range(rig), 1e-5, points.value_or(map_veil_points(rig, options)));
     const CameraRays rays(rig, 1);
     const Plane floor = floor_plane(rig.sled);
     const std::size_t plane = map.veil.size() / kChannels;
