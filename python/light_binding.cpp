@@ -118,16 +118,24 @@ void bind_plan(nb::module_& module) {
 
 // --- Lightmaps ----------------------------------------------------------------------------------
 
-LightmapOptions map_options(double error, bool has_veil, int threads) {
+LightmapOptions map_options(double error, double tolerance, bool has_veil, int threads) {
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
     require_range("error", error, kLeastError, kMostError);
-    return {.error = error, .threads = threads_of(threads), .has_veil = has_veil};
+    require_range("tolerance", tolerance, 0.0, kMostError);
+    return {.error = error,
+            .threads = threads_of(threads),
+            .has_veil = has_veil,
+            .veil_tolerance = tolerance};
 }
 
-RigLightmap lightmap(
-    const TextRig& rig, double error, bool has_veil, bool has_strobes, int threads) {
-    const LightmapOptions options = map_options(error, has_veil, threads);
+RigLightmap lightmap(const TextRig& rig,
+                     double error,
+                     double tolerance,
+                     bool has_veil,
+                     bool has_strobes,
+                     int threads) {
+    const LightmapOptions options = map_options(error, tolerance, has_veil, threads);
     const LightmapMaker maker(rig.rig, std::nullopt, options);
     RigLightmap light{.rig = std::make_shared<const Rig>(rig.rig), .map = maker.map(rig.rig.sled)};
     if (!has_strobes) return light;
@@ -145,10 +153,13 @@ class RigLightmapMaker {
     RigLightmapMaker(const TextRig& rig,
                      const std::vector<double>& altitudes_m,
                      double error,
+                     double tolerance,
                      bool has_veil,
                      int threads)
         : rig_(rig.rig),
-          maker_(rig.rig, paths_for(rig.rig, altitudes_m), map_options(error, has_veil, threads)) {}
+          maker_(rig.rig,
+                 paths_for(rig.rig, altitudes_m),
+                 map_options(error, tolerance, has_veil, threads)) {}
 
     [[nodiscard]] RigLightmap map(std::optional<double> altitude_m,
                                   std::optional<double> pitch_deg,
@@ -248,19 +259,22 @@ void bind_lightmap(nb::module_& module) {
                nb::arg("rig"),
                nb::kw_only(),
                nb::arg("error") = 1e-5,
+               nb::arg("tolerance") = kVeilOfSignal,
                nb::arg("veil") = true,
                nb::arg("per_strobe") = false,
                nb::arg("threads") = 0,
                NoLock(),
-               "Map the signal on the rig's bare flat floor, without POV-Ray.");
+               "Map the signal on the rig's bare flat floor, without POV-Ray. error: relative, of "
+               "the spectral integral; tolerance: of the veil, relative to the signal.");
 
     nb::class_<RigLightmapMaker>(
         module, "LightmapMaker", "Tables made once, for many maps of one rig in milliseconds each.")
-        .def(nb::init<const TextRig&, const std::vector<double>&, double, bool, int>(),
+        .def(nb::init<const TextRig&, const std::vector<double>&, double, double, bool, int>(),
              nb::arg("rig"),
              nb::kw_only(),
              nb::arg("altitudes_m") = std::vector<double>(),
              nb::arg("error") = 1e-5,
+             nb::arg("tolerance") = kVeilOfSignal,
              nb::arg("veil") = true,
              nb::arg("threads") = 0,
              NoLock(),

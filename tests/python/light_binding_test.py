@@ -55,6 +55,11 @@ def test_a_veil_is_the_commands_to_the_bit(rig_file, tmp_path, command, channels
         np.testing.assert_array_equal(light.veil[:, :, c], planes[f"veil.{name}"])
     np.testing.assert_array_equal(light.signal, light.floor + light.veil)
     assert aphotic.lightmap(rig, veil=False).veil is None
+    command("lightmap", "coast.toml", "-o", "coarse.exr", "--tolerance", "0.01", "--model-tolerance", "1e9")
+    coarse = channels(tmp_path / "coarse.exr")
+    by_tolerance = aphotic.lightmap(rig, tolerance=0.01)
+    np.testing.assert_array_equal(by_tolerance.veil[:, :, 1], coarse["veil.G"])
+    assert (by_tolerance.veil != light.veil).any()
 
 
 def test_arrays_are_views_that_outlive_their_map(rig_file):
