@@ -156,6 +156,22 @@ void ReliefPainter::look(std::span<const Pixel> pixels) {
         look_at_lanes(std::span(known).subspan(first, std::min(kLanes, known.size() - first)));
 }
 
+// To the planes' points, which without a port determine their rays, whatever pixels they belong to.
+LaneRays rays_from_pupil(const LanePlane& floor) {
+    LaneRays rays;
+    rays.count = 1;
+    LaneRay& ray = rays.ray[0];
+    ray.origin_m = every_lane(Eigen::Vector3d::Zero());
+    for_each_pack([&](std::size_t k) {
+        PackVector way = pack(floor.point_m, k);
+        const Pack per_length = 1.0 / root(dot(way, way));
+        for (Pack& along : way) along *= per_length;
+        set_pack(ray.direction, k, way);
+    });
+    meet(floor, ray);
+    return rays;
+}
+
 // Spare lanes repeat the last pixel.
 void ReliefPainter::look_at_lanes(std::span<const Pixel> pixels) {
     std::array<std::size_t, kLanes> pixel;
@@ -171,7 +187,8 @@ void ReliefPainter::look_at_lanes(std::span<const Pixel> pixels) {
         set_lane(floor.point_m, k, plane.point_m);
         set_lane(floor.normal, k, plane.normal);
     }
-    const LaneRays rays = light_.rays_at(column, row, floor);
+    const LaneRays rays =
+        light_.has_port() ? light_.rays_at(column, row, floor) : rays_from_pupil(floor);
     const LaneRay& middle = rays.ray[0];
     LaneLight light;
     std::array<std::uint32_t, kLanes> seen{};
