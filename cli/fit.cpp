@@ -152,6 +152,7 @@ void print_confounded(const std::vector<Confounded>& pairs) {
 }
 
 void print_result(const std::string& title,
+                  const std::string& rig_name,
                   const FitResult& result,
                   const std::filesystem::path& folder) {
     say("{}: {}\n", title, words_of(result));
@@ -165,6 +166,13 @@ void print_result(const std::string& title,
     for (const Suspicion& one : result.looks_wrong)
         say("looks wrong: {}: {}\n", one.about, one.what);
     say("correction by this rig is expected to be even to {:.2g} %\n", 100.0 * result.unevenness);
+    if (is_rig_as_good(result))
+        say("correction by {} as it is, too: its light differs from the fitted by {:.2g} %, within "
+            "the fit's error. Keep it, or hold what you know, such as --hold beam\n",
+            rig_name,
+            100.0 * result.moved);
+    else
+        say("correction by {} as it is: to {:.2g} %\n", rig_name, 100.0 * rig_unevenness(result));
     say("  {}  the rig\n", (folder / kFittedRig).string());
     say("  {}  errors and covariance\n", (folder / kFitNumbers).string());
     say("  {}  to look at\n", (folder / kFitPage).string());
@@ -197,7 +205,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (options.input.json) {
         say_text(json_text(json));
     } else {
-        print_result(rig.title, result, options.folder);
+        print_result(rig.title, options.input.rig, result, options.folder);
     }
     if (options.input.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
     return status_of_skips(

@@ -187,6 +187,51 @@ void add_outcomes(const FitObjective& objective,
     result.level_spread = std::sqrt(point.texture.level(green, green));
 }
 
+// Of the logarithms of two rigs' maps over the flight, each channel's mean left out.
+double moved_between(const FitObjective& objective,
+                     const FitPoint& point,
+                     const FitObjective& other_objective,
+                     FitPoint other) {
+    other.pose = point.pose;
+    const FitState state = objective.state_at(point);
+    const FitState other_state = other_objective.state_at(other);
+    const PathLight light = objective.path_light(state);
+    const PathLight other_light = other_objective.path_light(other_state);
+    std::array<std::vector<double>, kChannels> off;
+    const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
+    for (std::size_t i = 0; i < point.pose.size(); i += apart) {
+        const ImageView seen = objective.view(point, state, light, i);
+        const ImageView other_seen = other_objective.view(other, other_state, other_light, i);
+        const VectorXd difference = seen.light.logarithm - other_seen.light.logarithm;
+        for (Index row = 0; row < difference.size(); ++row)
+            if (std::isfinite(difference(row)))
+                off[static_cast<std::size_t>(row) % kChannels].push_back(difference(row));
+    }
+    double variance = 0.0;
+    for (std::size_t c = 0; c < objective.channels(); ++c) {
+        const auto all = VectorXd::Map(off[c].data(), std::ssize(off[c]));
+        if (all.size() > 0) variance += (all.array() - all.mean()).square().mean();
+    }
+    return std::sqrt(variance / static_cast<double>(objective.channels()));
+}
+
+// By which the fitted light differs from that of the rig as it is, none of its forms replaced.
+double moved_from_rig(const RigText& text,
+                      const FitSamples& samples,
+                      const FitOptions& options,
+                      const FitLight& light,
+                      const FitObjective& objective,
+                      const FitPoint& point) {
+    const FitOptions held{.free = std::vector<std::string>{"altitude"},
+                          .altitude_error_m = options.altitude_error_m,
+                          .attitude_error_rad = options.attitude_error_rad,
+                          .threads = options.threads};
+    const FitProblem as_it_is =
+        fit_problem(text, held, light.widest_rad(samples.images), light.block_rad());
+    const FitObjective of_rig(text, samples, held, light, as_it_is);
+    return moved_between(objective, point, of_rig, of_rig.first_point());
+}
+
 // In the keys' units, of the numbers.
 void add_numbers(const FitProblem& problem,
                  const FitObjective& objective,
@@ -289,6 +334,7 @@ FitResult fit(const RigText& text,
     result.block_px = samples.places.block_px;
     result.fixed = words_fixed_in(problem);
     result.unevenness = errors.unevenness;
+    result.moved = moved_from_rig(text, samples, options, light, objective, point);
     result.dispersion = point.dispersion;
     result.pattern = pattern_of(objective, point, samples.places);
     result.views = views_of(objective, point, samples);
@@ -296,6 +342,15 @@ FitResult fit(const RigText& text,
     add_numbers(problem, objective, point, samples, errors.covariance, result);
     for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     return result;
+}
+
+double rig_unevenness(const FitResult& result) {
+    return std::sqrt(
+        std::max(0.0, result.moved * result.moved - result.unevenness * result.unevenness));
+}
+
+bool is_rig_as_good(const FitResult& result) {
+    return rig_unevenness(result) <= result.unevenness;
 }
 
 bool is_curve(const FittedNumber& number) {

@@ -95,6 +95,7 @@ struct FitResult {
     std::vector<Confounded> confounded;               // |correlation| over 0.9, largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of fitted round beams
     double unevenness = 0.0;    // expected of a correction with this rig over the flight, rms
+    double moved = 0.0;         // by which the fitted light differs from the rig's; likewise, rms
     double veil_share = 0.0;    // of the signal, mean
     double texture = 0.0;       // of neighbouring blocks' differences, of green
     double level_spread = 0.0;  // of images
@@ -108,6 +109,12 @@ struct FitResult {
     double dispersion = 1.0;
     int rounds = 0;
 };
+
+// What a correction by the rig as it was is expected to leave: the fitted light is off by the fit's
+// error, and independently of that the rig's by the rest of what they differ by.
+[[nodiscard]] double rig_unevenness(const FitResult& result);
+// Whether that is no more than by the fitted rig: the survey does not show that the rig is wrong.
+[[nodiscard]] bool is_rig_as_good(const FitResult& result);
 
 // An InputError for a rig whose floor a fit does not support: with objects, a scene, or a gloss.
 void require_bare_floor(const Rig& rig);

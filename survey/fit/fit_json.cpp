@@ -94,6 +94,8 @@ FitJson to_json(const FitResult& result) {
     }
     return {{"fitted_to", source_json(result)},
             {"expected_unevenness", result.unevenness},
+            {"moved", result.moved},
+            {"rig_expected_unevenness", rig_unevenness(result)},
             {"numbers", std::move(numbers)},
             {"fixed", result.fixed},
             {"beams", std::move(beams)},

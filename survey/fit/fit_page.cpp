@@ -54,6 +54,12 @@ std::vector<std::string> verdict(const FitResult& result) {
                         "or another lens. {} of the signal is veil.",
                         percent(result.unevenness),
                         percent(result.veil_share)),
+            is_rig_as_good(result)
+                ? fmt::format("The rig as it was is expected to do as well: the fitted light "
+                              "differs from its light by {}, which the fit's error explains.",
+                              percent(result.moved))
+                : fmt::format("The rig as it was is expected to leave {}.",
+                              percent(rig_unevenness(result))),
             is_chance ? fmt::format("The fixed pattern over all images, {} of the light, does not "
                                     "exceed the floor's texture: whitened, its mean square is "
                                     "{:.2f}, where chance gives 1 ± {:.2f}.",

@@ -133,6 +133,9 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     const double expected = json.at("expected_unevenness").get<double>();
     EXPECT_LT(unevenness("fitted/fitted.toml"), kOnce * expected);
     EXPECT_LT(kOnce * expected, unevenness("rig.toml"));
+    const double by_rig = json.at("rig_expected_unevenness").get<double>();
+    EXPECT_LT(by_rig, kOnce * unevenness("rig.toml"));
+    EXPECT_LT(unevenness("rig.toml"), kOnce * by_rig);
 
     const Json source = json.at("fitted_to");
     EXPECT_EQ(Json({source["images"], source["block_px"], source["beam"]}), Json({20, 8, "table"}));

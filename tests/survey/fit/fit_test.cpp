@@ -102,6 +102,13 @@ double off_at(const RigText& start, const FitResult& result, const Rig& truth, c
     return std::sqrt(squares / kChannels);
 }
 
+// A rig that is right has nothing to gain, and the fit's error is no reason to change it.
+TEST(Fit, TellsARigThatIsRightFromOneThatIsNot) {
+    const FitSamples samples = fit_samples_of(fit_rig({}).rig(), flown({1.2, 1.5, 2.0}), kNoise, 5);
+    EXPECT_TRUE(is_rig_as_good(fit(fit_rig({}), samples, exact_poses(), {})));
+    EXPECT_FALSE(is_rig_as_good(fit(guess(), samples, exact_poses(), {})));
+}
+
 TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const Rig truth = fit_rig({}).rig();
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), kNoise, 1);
