@@ -167,12 +167,14 @@ void print_result(const std::string& title,
         say("looks wrong: {}: {}\n", one.about, one.what);
     say("correction by this rig is expected to be even to {:.2g} %\n", 100.0 * result.unevenness);
     if (is_rig_as_good(result))
-        say("correction by {} as it is, too: its light differs from the fitted by {:.2g} %, within "
-            "the fit's error. Keep it, or hold what you know, such as --hold beam\n",
+        say("{} as it is should correct as evenly: its light differs by {:.2g} %, within the fit's "
+            "error. Keep it, or hold what you know, such as --hold beam\n",
             rig_name,
             100.0 * result.moved);
     else
-        say("correction by {} as it is: to {:.2g} %\n", rig_name, 100.0 * rig_unevenness(result));
+        say("correction by {} as it is: even to {:.2g} %\n",
+            rig_name,
+            100.0 * rig_unevenness(result));
     say("  {}  the rig\n", (folder / kFittedRig).string());
     say("  {}  errors and covariance\n", (folder / kFitNumbers).string());
     say("  {}  to look at\n", (folder / kFitPage).string());
