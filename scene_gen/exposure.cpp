@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/exposure.h"
 
-#include "light/floor_arrival.h"
 #include "rig/camera/lens.h"
 #include "rig/geometry.h"
 #include "rig/solid.h"
@@ -116,15 +115,13 @@ void RadianceBound::add_point(const Vector3d& point_m,
         const double intensity =
             most_intensity(strobe.beam, frame_about(strobe.axis), towards, margin_rad);
         const double irradiance = strobe.power * intensity / (d_m * d_m);
-        const double height_m = std::max(0.0, -floor.normal.dot(towards));
-        const Arriving<double> even = arriving(height_m, camera_leg_m, 1.0, d_m);
+        const double cos_incidence = std::max(0.0, -floor.normal.dot(towards) / d_m);
         const double highlight = widened_highlight(
             rig_.seafloor, angle_between(mirrored, -towards), margin_rad + camera_reach_rad);
-        lit.push_back(
-            {.strobe = s,
-             .path_m = even.path_m,
-             .diffuse_per_m2 = strobe.power * intensity * even.per_area / std::numbers::pi,
-             .specular_per_m2 = irradiance * highlight / std::numbers::pi});
+        lit.push_back({.strobe = s,
+                       .path_m = d_m + camera_leg_m,
+                       .diffuse_per_m2 = irradiance * cos_incidence / std::numbers::pi,
+                       .specular_per_m2 = irradiance * highlight / std::numbers::pi});
     }
     points_.push_back({.reflectance = &rig_.seafloor.reflectance, .lit = std::move(lit)});
 }
