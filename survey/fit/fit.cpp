@@ -187,7 +187,9 @@ void add_outcomes(const FitObjective& objective,
     result.level_spread = std::sqrt(point.texture.level(green, green));
 }
 
-// Of the logarithms of two rigs' maps over the flight, each channel's mean left out.
+// The difference of the logarithms of two rigs' maps over the flight, at the blocks that count by
+// the first, less each channel's mean; rms. Where the other gives no light, it counts as the
+// darkest that would.
 double moved_between(const FitObjective& objective,
                      const FitPoint& point,
                      const FitObjective& other_objective,
@@ -197,22 +199,26 @@ double moved_between(const FitObjective& objective,
     const FitState other_state = other_objective.state_at(other);
     const PathLight light = objective.path_light(state);
     const PathLight other_light = other_objective.path_light(other_state);
-    std::array<std::vector<double>, kChannels> off;
+    const std::size_t channels = objective.channels();
+    std::vector<std::vector<double>> off(channels);
     const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
     for (std::size_t i = 0; i < point.pose.size(); i += apart) {
         const ImageView seen = objective.view(point, state, light, i);
         const ImageView other_seen = other_objective.view(other, other_state, other_light, i);
-        const VectorXd difference = seen.light.logarithm - other_seen.light.logarithm;
-        for (Index row = 0; row < difference.size(); ++row)
-            if (std::isfinite(difference(row)))
-                off[static_cast<std::size_t>(row) % kChannels].push_back(difference(row));
+        for (std::size_t k = 0; k < static_cast<std::size_t>(seen.residual.size()); ++k) {
+            if (!std::isfinite(seen.residual(static_cast<Index>(k)))) continue;
+            const auto row = static_cast<Index>(k / channels * kChannels + k % channels);
+            const double difference = seen.light.logarithm(row) - other_seen.light.logarithm(row);
+            off[k % channels].push_back(std::isfinite(difference) ? difference
+                                                                  : -std::log(kDarkestBlock));
+        }
     }
     double variance = 0.0;
-    for (std::size_t c = 0; c < objective.channels(); ++c) {
-        const auto all = VectorXd::Map(off[c].data(), std::ssize(off[c]));
+    for (const std::vector<double>& of : off) {
+        const auto all = VectorXd::Map(of.data(), std::ssize(of));
         if (all.size() > 0) variance += (all.array() - all.mean()).square().mean();
     }
-    return std::sqrt(variance / static_cast<double>(objective.channels()));
+    return std::sqrt(variance / static_cast<double>(channels));
 }
 
 // By which the fitted light differs from that of the rig as it is, none of its forms replaced.

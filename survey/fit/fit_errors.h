@@ -18,9 +18,9 @@
 // of the survey relative to what C predicts for such halves, for each kind of number, and for all
 // together as far as the numbers of a kind are few; it is the geometric mean over kSplits pairs of
 // halves, since one is occasionally lost, and at least 1. It is determined likewise for the map.
-// Aims have several solutions that explain a survey almost equally well, and halves end at the same
-// one: over forty random surveys (bench/fit_bench) they were off by kAimWidening times such errors,
-// rms, by which theirs are multiplied besides.
+// Errors of aims remain too small, for a reason that is not known: halves that start a prior's
+// spread apart end alike. Over forty random surveys (bench/fit_bench) aims were off by kAimWidening
+// times their errors, rms, so these are multiplied by it as well.
 //
 // Fewer than kFewestImages that count determine neither: their dispersion stays kFirstDispersion,
 // typical of patchy floors, and C = A^-1.
