@@ -83,6 +83,7 @@ void print_report(const CorrectionReport& report,
     say("  gain {}{}\n", gain_words(report.gain.gain), from);
     if (report.srgb) print_srgb(*report.srgb, folder);
     print_doubts(run);
+    if (!report.pattern.logarithm.empty()) say("  {}\n", words_of(report.pattern));
     if (!report.not_checked.empty()) say("  not checked: {}\n", report.not_checked);
     say("  {}\n", (folder / kCorrectionNotes).string());
     if (has_page) say("  {}\n", (folder / kReportPage).string());

@@ -200,7 +200,6 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     const FitResult result = fit(text, samples, fit_options, watch);
     write_fitted_rig(text, result, options.folder);
     nlohmann::ordered_json json = to_json(result);
-    json["dropouts"] = to_json(samples.marked);
     if (!options.input.depth.place.empty()) json["depth"] = to_json(options.input.depth);
     write_text_file(options.folder / kFitNumbers, json_text(json));
     write_fit_page(options.folder / kFitPage, text, samples, result);

@@ -3,6 +3,7 @@
 
 #include "base/upper_median.h"
 #include "image/image_size.h"
+#include "survey/fixed_pattern.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,8 +20,7 @@ namespace aphotic {
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMedianOfT2 = 0.8165;  // of the absolute value
-constexpr double kMedianOfT4 = 0.7407;
+constexpr double kMedianOfT4 = 0.7407;  // of the absolute value
 constexpr double kPeakOfT4 = 0.375;   // density at 0
 constexpr double kLeastScale = 0.02;  // poses and maps are no better than this
 constexpr double kFewDetail = 0.1;    // the least for few images
@@ -287,6 +287,11 @@ CellPlane cells_of(const Lightmap& map, int side) {
     CellPlane means = cells.means();
     for (double& mean : means) mean = std::isfinite(mean) ? mean : 0.0;
     return means;
+}
+
+CellPlane residual_of(const LightCells& image) {
+    const View view(image);
+    return view.residual(image.light, view.quotient(image.light));
 }
 
 DropoutScales learned(std::span<const LightCells> images, bool level_is_free) {

@@ -88,6 +88,9 @@ struct LightCells {
 // Means of the signal where it exceeds 0, as at an observed mosaic's green sites.
 [[nodiscard]] CellPlane cells_of(const Lightmap& map, int side);
 
+// The logarithm of signal over light, where the cell counts, less its median.
+[[nodiscard]] CellPlane residual_of(const LightCells& image);
+
 struct DropoutScales {
     std::size_t images = 0;        // learned from; 0: nothing is judged
     double level = 0.0;            // ln E

@@ -128,6 +128,16 @@ void judge_looks(const Survey& survey, SurveyLook& look) {
     look.images = std::move(lit);
 }
 
+FixedPattern pattern_of(std::span<const ImageLook> looks) {
+    if (looks.size() < kEnoughImages || !looks.front().cells.has_map) return {};
+    std::vector<std::vector<float>> residuals;
+    for (const ImageLook& look : looks) {
+        const CellPlane residual = residual_of(look.cells);
+        residuals.emplace_back(residual.begin(), residual.end());
+    }
+    return fixed_pattern(residuals, size_of(looks.front().cells.side));
+}
+
 // The files to examine, in order, and whether each contributes to the gain.
 struct Choice {
     std::size_t file = 0;
@@ -179,6 +189,7 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
         }
     }
     judge_looks(survey, result);
+    result.pattern = pattern_of(result.images);
     return result;
 }
 

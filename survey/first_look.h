@@ -5,6 +5,7 @@
 // gain uses.
 #pragma once
 
+#include "survey/fixed_pattern.h"
 #include "survey/run_watch.h"
 #include "survey/survey.h"
 #include "survey/survey_check.h"
@@ -29,6 +30,7 @@ struct SurveyLook {
     std::size_t count = 0;             // of images examined
     DropoutScales scales{};            // by which images that lack light were omitted
     std::optional<Suspicion> doubt{};  // about the rig, from its strobes' apparent behaviour
+    FixedPattern pattern{};            // of images with a map, if they are kEnoughImages
     std::string first_why{};           // the first unusable image, and why; or empty
 
     // A message if none is usable: what cannot be done to them, such as "read", and why.

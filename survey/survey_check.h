@@ -40,6 +40,8 @@
 //              as for the attitude, from the light of the other convention and that of the
 //              navigation's plane; or if the correlation of the navigation's altitudes with the
 //              maps' median depths is under kLikeAltitudes.
+// pattern      Corrected images share a fixed pattern that is too large (fixed_pattern.h), and
+//              nothing else is reported that may cause it.
 //
 // Slopes are least squares over the images, with the standard error from their residuals, which
 // floors that differ from image to image widen. If the maps hardly differ there is no slope.
@@ -132,10 +134,11 @@ inline constexpr std::size_t kEnoughImages = 12;
 
 // Warnings about the navigation do not concern the light.
 inline constexpr std::string_view kAboutNavigation = "navigation";
+inline constexpr std::string_view kAboutPattern = "pattern";
 
 struct Suspicion {
     // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map",
-    // "attitude", "navigation", "exposure", "strobes", "depth"
+    // "attitude", "navigation", "exposure", "strobes", "depth", "pattern"
     std::string about;
     std::string what;  // with the number that shows it
 };

@@ -5,6 +5,7 @@
 #include "report/html.h"
 #include "report/page.h"
 #include "report/svg.h"
+#include "survey/fixed_pattern_parts.h"
 
 #include <fmt/format.h>
 
@@ -242,6 +243,12 @@ std::string correction_html(const Survey& survey,
              {.id = "light",
               .heading = "Light over altitude",
               .parts = light_over_altitude(report.looks)},
+             {.id = "pattern",
+              .heading = "What stays in place",
+              .parts = parts_of(report.pattern,
+                                static_cast<std::size_t>(cells_across(survey.light.size.width_px,
+                                                                      survey.light.size.height_px)),
+                                survey.light.size)},
              {.id = "gain", .heading = "Gain", .parts = {gains(report)}},
              {.id = "doubts", .heading = "Doubtful pixels", .parts = {doubts(run)}},
              {.id = "skipped", .heading = "Skipped images", .parts = parts_of_images(run.skipped)},

@@ -86,7 +86,8 @@ Json to_json(const CorrectionReport& report) {
                 {"gain_from", report.gain.images},
                 {"gain_folder", nullptr},
                 {"looks_wrong", to_json(report.looks_wrong)},
-                {"not_checked", report.not_checked}};
+                {"not_checked", report.not_checked},
+                {"pattern", to_json(report.pattern)}};
         if (!report.gain.folder.empty()) json["gain_folder"] = report.gain.folder;
     }
     if (report.srgb) json["srgb"] = to_json(*report.srgb);

@@ -89,10 +89,12 @@ void compare_levels(const nlohmann::json& settings,
     }
 }
 
-// A warning about the navigation, such as a track that still grows, does not concern the gain.
+// A warning about the navigation, such as a track that still grows, does not concern the gain; and
+// medians hardly depend on a pattern.
 bool looked_wrong(const nlohmann::json& notes) {
     return std::ranges::any_of(notes.at("looks_wrong"), [](const nlohmann::json& one) {
-        return one.at("about") != std::string(kAboutNavigation);
+        const auto about = one.at("about").get<std::string>();
+        return about != kAboutNavigation && about != kAboutPattern;
     });
 }
 
@@ -248,6 +250,18 @@ bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
     return !gain.images.empty() || options.middle;
 }
 
+// Other errors of the light leave a pattern as well.
+std::optional<Suspicion> pattern_doubt(const FixedPattern& pattern,
+                                       std::span<const Suspicion> others) {
+    const bool has_cause = std::ranges::any_of(
+        others, [](const Suspicion& one) { return one.about != kAboutNavigation; });
+    if (has_cause || !pattern.is_too_large()) return std::nullopt;
+    return Suspicion{std::string(kAboutPattern),
+                     words_of(pattern) +
+                         ": the light differs from the rig's or the map's; `aphotic fit` finds "
+                         "aims, powers, beams and water that explain the images"};
+}
+
 class ModelCorrector : public Corrector {
   public:
     ModelCorrector(const Survey& survey, const CorrectionOptions& options)
@@ -305,6 +319,9 @@ class ModelCorrector : public Corrector {
             if (const auto doubt = exposure_doubt(look.images))
                 report.looks_wrong.push_back(*doubt);
         }
+        report.pattern = look.pattern;
+        if (const auto doubt = pattern_doubt(look.pattern, report.looks_wrong))
+            report.looks_wrong.push_back(*doubt);
         scales_ = look.scales;
         report.not_checked = not_checked(look.images);
         report.looks = look.images;

@@ -108,6 +108,7 @@ struct CorrectionReport {
     std::optional<SrgbEncoding> srgb{};  // empty: linear only
     std::vector<ImageLook> looks{};      // for the model: images examined before correction
     std::vector<Suspicion> looks_wrong{};
+    FixedPattern pattern{};           // of the same images, by cells (dropouts.h)
     std::string not_checked{};        // what was not checked, and why; or empty
     std::optional<RunOutcome> run{};  // empty: the run has not ended
     double seconds = 0.0;

@@ -6,7 +6,6 @@
 #include "survey/fit/fit_check.h"
 #include "survey/fit/fit_errors.h"
 #include "survey/fit/fit_objective.h"
-#include "survey/fit/fit_pattern.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -127,6 +126,22 @@ std::vector<Confounded> confounded_in(const FitProblem& problem, const MatrixXd&
         return std::abs(a.correlation) > std::abs(b.correlation);
     });
     return found;
+}
+
+// Of green, or of a mono camera's one channel.
+FixedPattern pattern_of(const FitObjective& objective,
+                        const FitPoint& point,
+                        const FitPlaces& places) {
+    const FitState state = objective.state_at(point);
+    const PathLight light = objective.path_light(state);
+    const std::size_t channels = objective.channels();
+    std::vector<std::vector<float>> residuals(point.pose.size());
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+        const ImageView view = objective.view(point, state, light, i);
+        for (std::size_t at = channels / 2; at < places.size() * channels; at += channels)
+            residuals[i].push_back(static_cast<float>(view.residual(static_cast<Index>(at))));
+    }
+    return fixed_pattern(residuals, places.across());
 }
 
 // Observed and fitted, of the lowest image, a middle one, and the highest.
@@ -307,6 +322,7 @@ FitResult fit(const RigText& text,
     const FitObjective objective(text, samples, options, light, problem);
     FitResult result;
     result.looks_wrong = samples.looks_wrong;
+    result.marked = samples.marked;
     if (const auto mistake = mistaken_input(samples, objective, problem, light)) {
         watch.looks_wrong({*mistake});
         result.looks_wrong.push_back(*mistake);

@@ -15,6 +15,7 @@
 #include "rig/file/rig_text.h"
 #include "survey/fit/fit_problem.h"
 #include "survey/fit/fit_samples.h"
+#include "survey/fixed_pattern.h"
 #include "survey/run_watch.h"
 #include "survey/survey_check.h"
 
@@ -78,15 +79,6 @@ struct FitView {
 };
 inline constexpr std::size_t kFitViews = 3;
 
-// The part of neighbouring blocks' differences that is common to all images.
-struct FitPattern {
-    std::vector<float> logarithm;  // by place: relative error of the light
-    double rms = 0.0;
-    double by_chance = 0.0;  // rms that texture alone gives for as many images
-    double whitened = 0.0;   // mean square of the differences over their errors: 1 by chance
-    double chance = 0.0;     // standard deviation of that
-};
-
 struct FitResult {
     FitState state;
     std::vector<FittedNumber> numbers;
@@ -99,10 +91,11 @@ struct FitResult {
     double veil_share = 0.0;    // of the signal, mean
     double texture = 0.0;       // of neighbouring blocks' differences, of green
     double level_spread = 0.0;  // of images
-    FitPattern pattern;
+    FixedPattern pattern;       // of green, by block
     std::vector<ImageOutcome> images;
     std::vector<FitView> views;
     std::vector<Suspicion> looks_wrong;
+    std::vector<MarkedImage> marked;  // dropouts, left out
     bool are_maps = false;
     int block_px = 1;
     std::size_t blocks = 0;

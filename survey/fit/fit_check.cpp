@@ -46,9 +46,9 @@ std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& re
         saturated += image.saturated_share / static_cast<double>(samples.images.size());
     if (saturated > kMostSaturation)
         found.push_back({"saturation", fmt::format("{:.2g} of all samples, left out", saturated)});
-    const FitPattern& pattern = result.pattern;
-    if (pattern.rms > kMostPattern && pattern.whitened > 1.0 + kPatternSigmas * pattern.chance) {
-        found.push_back({"pattern",
+    const FixedPattern& pattern = result.pattern;
+    if (pattern.is_too_large()) {
+        found.push_back({std::string(kAboutPattern),
                          fmt::format("residuals keep a fixed pattern over all images, {:.2g} rms "
                                      "where chance gives {:.2g}: a beam, lens or water that the "
                                      "fit does not allow, or a wrong black level",

@@ -4,8 +4,7 @@
 // (survey_check.h). After it, signs that its model does not fit the images:
 //
 //   saturation  more than kMostSaturation of all samples, which the fit omits
-//   pattern     residuals that stay in place from image to image by more than kMostPattern rms, and
-//               kPatternSigmas of chance
+//   pattern     residuals that stay in place from image to image (fixed_pattern.h)
 //   range       a number farther from the rig's than kFarthest prior spreads
 //
 // Floors of varying brightness, patches, and errors of the poses are not reported: the fit allows
@@ -23,8 +22,6 @@
 namespace aphotic {
 
 inline constexpr double kMostSaturation = 0.02;
-inline constexpr double kMostPattern = 0.02;
-inline constexpr double kPatternSigmas = 4.0;
 inline constexpr double kFarthest = 4.0;
 
 [[nodiscard]] std::optional<Suspicion> mistaken_input(const FitSamples& samples,

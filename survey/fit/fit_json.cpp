@@ -101,17 +101,15 @@ FitJson to_json(const FitResult& result) {
             {"beams", std::move(beams)},
             {"confounded", std::move(confounded)},
             {"looks_wrong", to_json(result.looks_wrong)},
-            {"pattern",
-             {{"rms", result.pattern.rms},
-              {"by_chance", result.pattern.by_chance},
-              {"whitened", result.pattern.whitened}}},
+            {"pattern", to_json(result.pattern)},
             {"veil_share", result.veil_share},
             {"texture", result.texture},
             {"floor_brightness_spread", result.level_spread},
             {"images", std::move(images)},
             {"covariance", covariance_json(result)},
             {"dispersion", result.dispersion},
-            {"rounds", result.rounds}};
+            {"rounds", result.rounds},
+            {"dropouts", to_json(result.marked)}};
 }
 
 }  // namespace aphotic

@@ -7,7 +7,7 @@
 #include "report/html.h"
 #include "report/page.h"
 #include "report/svg.h"
-#include "survey/fit/fit_check.h"
+#include "survey/fixed_pattern_parts.h"
 
 #include <fmt/format.h>
 
@@ -20,8 +20,6 @@
 
 namespace aphotic {
 namespace {
-
-constexpr double kShownPattern = 0.05;  // for full colour
 
 std::string percent(double share) {
     return fmt::format("{:.2g}\xC2\xA0%", 100.0 * share);
@@ -46,8 +44,6 @@ std::string headline(const FitResult& result) {
 }
 
 std::vector<std::string> verdict(const FitResult& result) {
-    const FitPattern& pattern = result.pattern;
-    const bool is_chance = pattern.whitened <= 1.0 + kPatternSigmas * pattern.chance;
     return {fmt::format("Correction by this rig is expected to be even to {}: the error of its "
                         "light over this flight, apart from the floor's mean level. It does not "
                         "include what the rig does not model, such as a veil that its water lacks, "
@@ -60,16 +56,7 @@ std::vector<std::string> verdict(const FitResult& result) {
                               percent(result.moved))
                 : fmt::format("The rig as it was is expected to leave {}.",
                               percent(rig_unevenness(result))),
-            is_chance ? fmt::format("The fixed pattern over all images, {} of the light, does not "
-                                    "exceed the floor's texture: whitened, its mean square is "
-                                    "{:.2f}, where chance gives 1 ± {:.2f}.",
-                                    percent(pattern.rms),
-                                    pattern.whitened,
-                                    pattern.chance)
-                      : fmt::format("The fixed pattern over all images, {} of the light, is more "
-                                    "than the floor's texture gives by chance, {}.",
-                                    percent(pattern.rms),
-                                    percent(pattern.by_chance))};
+            "The residuals have " + words_of(result.pattern) + "."};
 }
 
 std::vector<std::string> warnings(const FitResult& result) {
@@ -109,19 +96,6 @@ std::vector<PagePart> confounded(const FitResult& result) {
     return {"Pairs that nearly compensate for each other.", std::move(table)};
 }
 
-// Blue where images are darker than the fit, red where they are brighter.
-std::uint32_t pattern_colour(float off) {
-    const double share = std::clamp(static_cast<double>(off) / kShownPattern, -1.0, 1.0);
-    const auto level = [](double value) {
-        return static_cast<std::uint32_t>(std::lround(255.0 * value));
-    };
-    const double faded = 1.0 - std::abs(share);
-    const std::uint32_t red = level(share > 0.0 ? 1.0 : faded);
-    const std::uint32_t green = level(faded);
-    const std::uint32_t blue = level(share > 0.0 ? faded : 1.0);
-    return red << 16U | green << 8U | blue;
-}
-
 std::vector<PagePart> views(const FitSamples& samples, const FitResult& result) {
     const int width_px = static_cast<int>(samples.places.across());
     const int height_px = static_cast<int>(samples.places.down());
@@ -143,20 +117,16 @@ std::vector<PagePart> views(const FitSamples& samples, const FitResult& result) 
                                     named(samples.images[view.image].name),
                                     samples.images[view.image].sled.altitude_m)});
     }
-    std::vector<std::uint32_t> colours;
-    for (const float off : result.pattern.logarithm) colours.push_back(pattern_colour(off));
-    PageFigures pattern{
-        .figures = {{.pictures = {shown(png_of(colours, width_px, height_px), "pattern")},
-                     .caption = "fixed pattern"}},
-        .are_small = true};
     return {fmt::format("Images as observed, in blocks of {} pixels, and as the fitted rig "
                         "predicts them for an even floor.",
                         samples.places.block_px),
-            std::move(figures),
-            fmt::format("The pattern that all images share and the fit does not explain: red "
-                        "brighter, blue darker, full colour at {:.0f} % and beyond.",
-                        100.0 * kShownPattern),
-            std::move(pattern)};
+            std::move(figures)};
+}
+
+std::vector<PagePart> pattern(const FitSamples& samples, const FitResult& result) {
+    return parts_of(result.pattern,
+                    samples.places.across(),
+                    {samples.places.width_px, samples.places.height_px});
 }
 
 constexpr double kWidth = 760.0;
@@ -253,6 +223,7 @@ void write_fit_page(const std::filesystem::path& file,
         .sections = {
             {.id = "numbers", .heading = "What was found", .parts = numbers(result)},
             {.id = "views", .heading = "Observed and fitted", .parts = views(samples, result)},
+            {.id = "pattern", .heading = "What stays in place", .parts = pattern(samples, result)},
             {.id = "beams", .heading = "Beam", .parts = beams(result)},
             {.id = "altitude",
              .heading = "The floor over altitude",

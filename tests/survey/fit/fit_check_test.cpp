@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace aphotic::fit_check_test {
@@ -21,8 +22,7 @@ struct Fitted {
         result.numbers = {
             {.key = "water.multiple", .start = 1.0, .value = 1.0, .error = 0.02, .spread = 0.3},
             {.key = "strobe.fore.beam.ln_0", .start = 0.0, .value = 9.0, .spread = 0.3}};
-        result.pattern = {
-            .logarithm = {}, .rms = 0.01, .by_chance = 0.01, .whitened = 1.0, .chance = 0.02};
+        result.pattern = {.rms = 0.01, .by_chance = 0.01, .most_by_chance = 0.015};
     }
 
     [[nodiscard]] std::string signs() const {
@@ -39,13 +39,14 @@ TEST(FitCheck, AllIsWell) {
 // It must be large, and larger than chance.
 TEST(FitCheck, ResidualsThatStayInPlace) {
     Fitted fitted;
-    FitPattern& pattern = fitted.result.pattern;
-    const double much = 1.0 + kMore * kPatternSigmas * pattern.chance;
-    pattern.rms = kMore * kMostPattern;
-    EXPECT_EQ(fitted.signs(), "");
-    pattern.whitened = much;
+    FixedPattern& pattern = fitted.result.pattern;
+    const auto rms_of = [&](double excess) { return std::hypot(excess, pattern.by_chance); };
+    pattern.rms = rms_of(kMore * kMostPattern);
     EXPECT_EQ(fitted.signs(), "pattern\n");
-    pattern.rms = kLess * kMostPattern;
+    pattern.most_by_chance = kMore * pattern.rms;
+    EXPECT_EQ(fitted.signs(), "");
+    pattern.most_by_chance = pattern.by_chance;
+    pattern.rms = rms_of(kLess * kMostPattern);
     EXPECT_EQ(fitted.signs(), "");
 }
 
