@@ -316,8 +316,8 @@ std::optional<double> truth_of(const Survey& survey, const FittedNumber& number)
         if (number.key == key + "aim_along_deg") return survey.numbers.off_deg[s][0];
         if (number.key == key + "aim_across_deg") return survey.numbers.off_deg[s][1];
         double mean = 0.0;
-        for (const double power : survey.numbers.power) mean += 0.25 * std::log(power);
-        if (number.key == key + "power") return survey.numbers.power[s] / std::exp(mean);
+        for (const double power : survey.numbers.power) mean += 0.25 * power;
+        if (number.key == key + "power") return survey.numbers.power[s] / mean;
     }
     if (number.key == "camera.vignetting.cosine") return survey.exponent;
     if (number.key == "water.multiple") return survey.water;

@@ -157,7 +157,7 @@ void print_result(const std::string& title,
                   const std::filesystem::path& folder) {
     say("{}: {}\n", title, words_of(result));
     for (const FittedNumber& one : result.numbers)
-        if (!is_curve(one)) say("  {:<34} {:>10.4g} +- {:.2g}\n", one.key, one.value, one.error);
+        if (!is_curve(one)) say("  {:<36} {}\n", one.key, with_error(one));
     for (const FittedNumber& one : result.numbers)
         if (!one.is_determined) say("{}\n", words_of(one));
     if (!result.fixed.empty())

@@ -2,6 +2,7 @@
 #include "survey/first_look.h"
 
 #include "base/error.h"
+#include "base/in_order.h"
 #include "base/parallel.h"
 #include "base/words.h"
 #include "image/any_image.h"
@@ -128,14 +129,52 @@ void judge_looks(const Survey& survey, SurveyLook& look) {
     look.images = std::move(lit);
 }
 
-FixedPattern pattern_of(std::span<const ImageLook> looks) {
-    if (looks.size() < kEnoughImages || !looks.front().cells.has_map) return {};
+// Of more images of a large survey, the chance level of a fixed pattern is lower.
+std::vector<LightCells> cells_of_more(const Survey& survey,
+                                      const LookRequest& request,
+                                      const RunWatch& watch) {
+    const std::size_t files = survey.files.size();
+    const auto share = static_cast<std::size_t>(kPatternShare * static_cast<double>(files));
+    const std::size_t count =
+        share > request.most_images ? std::min(share, kMostPatternImages) : std::size_t{0};
+    std::vector<LightCells> cells;
+    in_order(
+        count,
+        static_cast<int>(request.jobs),
+        [&](std::size_t i) {
+            const ImageFile& file = survey.files[i * files / count];
+            const SurveyImage taken = read_survey_image(file.source, survey.camera);
+            require_light_for(taken.raw, survey.light);
+            return light_cells(taken, survey, file);
+        },
+        [&](std::size_t i, LightCells one) {
+            cells.push_back(std::move(one));
+            watch.progress("looking for a fixed pattern",
+                           static_cast<double>(i + 1) / static_cast<double>(count));
+        },
+        // The image is reported when its turn comes.
+        [](std::size_t, const std::string&) {});
+    return cells;
+}
+
+FixedPattern pattern_of(std::span<const ImageLook> looks,
+                        std::vector<LightCells> more,
+                        const DropoutScales& scales) {
+    std::erase_if(more, [&](const LightCells& one) {
+        const Dropout found = judged(one, scales);
+        return found.is_dark || found.is_any();
+    });
+    if (more.size() < looks.size()) {
+        more.clear();
+        for (const ImageLook& look : looks) more.push_back(look.cells);
+    }
+    if (more.size() < kEnoughImages) return {};
     std::vector<std::vector<float>> residuals;
-    for (const ImageLook& look : looks) {
-        const CellPlane residual = residual_of(look.cells);
+    for (const LightCells& cells : more) {
+        const CellPlane residual = residual_of(cells);
         residuals.emplace_back(residual.begin(), residual.end());
     }
-    return fixed_pattern(residuals, size_of(looks.front().cells.side));
+    return fixed_pattern(residuals, size_of(more.front().side));
 }
 
 // The files to examine, in order, and whether each contributes to the gain.
@@ -189,7 +228,9 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
         }
     }
     judge_looks(survey, result);
-    result.pattern = pattern_of(result.images);
+    if (survey.light.map)
+        result.pattern =
+            pattern_of(result.images, cells_of_more(survey, wanted, watch), result.scales);
     return result;
 }
 

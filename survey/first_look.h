@@ -18,6 +18,11 @@
 
 namespace aphotic {
 
+// The share of a survey's images, and the most, that are searched for a fixed pattern, if these are
+// more than are examined anyway.
+inline constexpr double kPatternShare = 0.05;
+inline constexpr std::size_t kMostPatternImages = 200;
+
 struct LookRequest {
     std::size_t most_images = 16;
     std::size_t gain_images = 0;  // for the gain, whether or not they are among these
@@ -30,7 +35,7 @@ struct SurveyLook {
     std::size_t count = 0;             // of images examined
     DropoutScales scales{};            // by which images that lack light were omitted
     std::optional<Suspicion> doubt{};  // about the rig, from its strobes' apparent behaviour
-    FixedPattern pattern{};            // of images with a map, if they are kEnoughImages
+    FixedPattern pattern{};            // of kEnoughImages or more with a map
     std::string first_why{};           // the first unusable image, and why; or empty
 
     // A message if none is usable: what cannot be done to them, such as "read", and why.

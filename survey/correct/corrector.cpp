@@ -252,14 +252,15 @@ bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
 
 // Other errors of the light leave a pattern as well.
 std::optional<Suspicion> pattern_doubt(const FixedPattern& pattern,
+                                       bool has_rig,
                                        std::span<const Suspicion> others) {
     const bool has_cause = std::ranges::any_of(
         others, [](const Suspicion& one) { return one.about != kAboutNavigation; });
     if (has_cause || !pattern.is_too_large()) return std::nullopt;
     return Suspicion{std::string(kAboutPattern),
-                     words_of(pattern) +
-                         ": the light differs from the rig's or the map's; `aphotic fit` finds "
-                         "aims, powers, beams and water that explain the images"};
+                     words_of(pattern) + (has_rig ? ": the light differs from the rig's; `aphotic "
+                                                    "fit` finds a rig that explains the images"
+                                                  : ": the light differs from the map's")};
 }
 
 class ModelCorrector : public Corrector {
@@ -270,7 +271,7 @@ class ModelCorrector : public Corrector {
     // Changing these texts invalidates the images in every folder.
     [[nodiscard]] Json settings() const override {
         const LightAt& light = survey_.light;
-        Json json{{survey_.navigation || survey_.depth ? "rig_sha256" : "map_sha256", light.digest},
+        Json json{{has_rig() ? "rig_sha256" : "map_sha256", light.digest},
                   {"camera_sha256", light.camera_digest},
                   {"keep_mosaic", options_.keep_mosaic},
                   {"gain", nullptr},
@@ -320,7 +321,7 @@ class ModelCorrector : public Corrector {
                 report.looks_wrong.push_back(*doubt);
         }
         report.pattern = look.pattern;
-        if (const auto doubt = pattern_doubt(look.pattern, report.looks_wrong))
+        if (const auto doubt = pattern_doubt(look.pattern, has_rig(), report.looks_wrong))
             report.looks_wrong.push_back(*doubt);
         scales_ = look.scales;
         report.not_checked = not_checked(look.images);
@@ -365,6 +366,8 @@ class ModelCorrector : public Corrector {
     }
 
   private:
+    [[nodiscard]] bool has_rig() const { return survey_.navigation || survey_.depth; }
+
     const Survey& survey_;
     const CorrectionOptions& options_;
     std::vector<Suspicion> doubts_;  // about the given gain

@@ -259,17 +259,21 @@ void add_numbers(const FitProblem& problem,
                  const FitPoint& point,
                  const FitSamples& samples,
                  const MatrixXd& told,
+                 const std::vector<double>& powers,
                  FitResult& result) {
     VectorXd units(told.rows());
     for (Index k = 0; k < told.rows(); ++k) {
         const FitNumber& number = problem.numbers[static_cast<std::size_t>(k)];
-        units(k) = number.shown_slope(point.x(k));
+        const double scale = number.at.part == FitPart::Power
+                                 ? powers[number.at.of] / result.state.power[number.at.of]
+                                 : 1.0;
+        units(k) = scale * number.shown_slope(point.x(k));
         const double error = std::sqrt(told(k, k));
         const bool is_of_curve = number.at.part == FitPart::Beam && !number.is_shown_exp;
         FittedNumber one{.key = number.key,
                          .word = number.word,
                          .start = number.shown(0.0),
-                         .value = number.shown(point.x(k)),
+                         .value = scale * number.shown(point.x(k)),
                          .error = units(k) * error,
                          .spread = units(k) * number.spread,
                          .is_determined = is_of_curve || error < kDetermined * number.spread};
@@ -350,8 +354,9 @@ FitResult fit(const RigText& text,
                            (done + static_cast<double>(round) / kMostRounds) / (2.0 * kSplits));
         });
     };
-    const FitErrors errors = errors_of(objective, problem, point, answer_of_half);
     result.state = objective.state_at(point);
+    const std::vector<double> powers = powers_in(result.state, rig);
+    const FitErrors errors = errors_of(objective, problem, point, powers, answer_of_half);
     result.are_maps = samples.are_maps;
     result.block_px = samples.places.block_px;
     result.fixed = words_fixed_in(problem);
@@ -361,7 +366,7 @@ FitResult fit(const RigText& text,
     result.pattern = pattern_of(objective, point, samples.places);
     result.views = views_of(objective, point, samples);
     add_outcomes(objective, point, samples, result);
-    add_numbers(problem, objective, point, samples, errors.covariance, result);
+    add_numbers(problem, objective, point, samples, errors.covariance, powers, result);
     for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     return result;
 }
@@ -377,6 +382,14 @@ bool is_rig_as_good(const FitResult& result) {
 
 bool is_curve(const FittedNumber& number) {
     return number.key.find(".beam.ln_") != std::string::npos;
+}
+
+std::string with_error(const FittedNumber& number, std::string_view sign) {
+    constexpr int kOfExact = 4;
+    const int decimals =
+        number.error > 0.0 ? std::max(0, 1 - static_cast<int>(std::floor(std::log10(number.error))))
+                           : kOfExact;
+    return fmt::format("{:.{}f} {} {:.{}f}", number.value, decimals, sign, number.error, decimals);
 }
 
 std::string words_of(const FitResult& result) {

@@ -24,6 +24,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -56,6 +57,9 @@ struct BeamPoint {
     double intensity = 0.0;  // for a beam scaled to a flux of 1
     double error = 0.0;
 };
+
+// To two significant digits of its error, "4.06 +- 0.13" with that sign.
+[[nodiscard]] std::string with_error(const FittedNumber& number, std::string_view sign = "+-");
 
 // Two numbers that compensate for each other.
 struct Confounded {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -121,26 +122,28 @@ double dispersion_at(const FitObjective& objective, const FitPoint& point) {
                         (of.inverse * (of.curvature - of.known)).trace());
 }
 
-MatrixXd without_common_power(const FitProblem& problem) {
+MatrixXd without_common_power(const FitProblem& problem, const std::vector<double>& powers) {
     const auto count = std::ssize(problem.numbers);
     MatrixXd keep = MatrixXd::Identity(count, count);
-    std::vector<Index> powers;
-    for (Index k = 0; k < count; ++k)
-        if (problem.numbers[static_cast<std::size_t>(k)].at.part == FitPart::Power)
-            powers.push_back(k);
     if (powers.size() < 2) return keep;
-    for (const Index one : powers)
-        for (const Index other : powers)
-            keep(one, other) -= 1.0 / static_cast<double>(powers.size());
+    const double all = std::accumulate(powers.begin(), powers.end(), 0.0);
+    for (Index other = 0; other < count; ++other) {
+        const FitPlaceInState& at = problem.numbers[static_cast<std::size_t>(other)].at;
+        if (at.part != FitPart::Power) continue;
+        for (Index one = 0; one < count; ++one)
+            if (problem.numbers[static_cast<std::size_t>(one)].at.part == FitPart::Power)
+                keep(one, other) -= powers[at.of] / all;
+    }
     return keep;
 }
 
 FitErrors errors_of(const FitObjective& objective,
                     const FitProblem& problem,
                     const FitPoint& point,
+                    const std::vector<double>& powers,
                     const std::function<FitPoint(std::size_t, std::size_t)>& half) {
     const auto count = std::ssize(problem.numbers);
-    const MatrixXd keep = without_common_power(problem);
+    const MatrixXd keep = without_common_power(problem, powers);
     const Sandwich sandwich = sandwich_at(objective, point);
     const std::vector<RowVectorXd> slopes = map_slopes(objective, point);
     const bool are_few = objective.counted(point).size() < kFewestImages;

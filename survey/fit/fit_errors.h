@@ -36,6 +36,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace aphotic {
 
@@ -49,8 +50,10 @@ inline constexpr std::size_t kFewPoses = 12;
 
 [[nodiscard]] double dispersion_at(const FitObjective& objective, const FitPoint& point);
 
-// Numbers less the common scale of all powers, which images do not determine and maps do not need.
-[[nodiscard]] Eigen::MatrixXd without_common_power(const FitProblem& problem);
+// The derivatives of the fitted rig's numbers by those of the fit: the common scale of all powers,
+// which images do not determine and maps do not need, is left out. powers: powers_in().
+[[nodiscard]] Eigen::MatrixXd without_common_power(const FitProblem& problem,
+                                                   const std::vector<double>& powers);
 
 struct FitErrors {
     Eigen::MatrixXd covariance;  // of the problem's numbers, less the common power
@@ -60,6 +63,7 @@ struct FitErrors {
 [[nodiscard]] FitErrors errors_of(const FitObjective& objective,
                                   const FitProblem& problem,
                                   const FitPoint& point,
+                                  const std::vector<double>& powers,
                                   const std::function<FitPoint(std::size_t, std::size_t)>& half);
 
 }  // namespace aphotic

@@ -158,6 +158,19 @@ std::size_t FitPlaces::across() const {
     return static_cast<std::size_t>(std::ranges::count(rows, rows.front()));
 }
 
+std::vector<double> powers_in(const FitState& state, const Rig& rig) {
+    std::vector<double> powers;
+    double all = 0.0;
+    double was = 0.0;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        powers.push_back(state.power[s] * state.beams[state.beam_of[s]].fitted().flux);
+        all += powers.back();
+        was += rig.strobes[s].power;
+    }
+    for (double& power : powers) power *= was / all;
+    return powers;
+}
+
 double& number_in(FitState& state, const FitPlaceInState& at) {
     switch (at.part) {
         case FitPart::Water:

@@ -94,6 +94,9 @@ struct FitPlaceInState {
 
     [[nodiscard]] bool operator==(const FitPlaceInState&) const = default;
 };
+// Of the fitted rig, by strobe: beams scaled to a flux of 1, and the sum as in the rig, since
+// images do not determine the common scale.
+[[nodiscard]] std::vector<double> powers_in(const FitState& state, const Rig& rig);
 [[nodiscard]] double& number_in(FitState& state, const FitPlaceInState& at);
 
 // The axis of a strobe with the state's aim.

@@ -25,13 +25,6 @@ std::string percent(double share) {
     return fmt::format("{:.2g}\xC2\xA0%", 100.0 * share);
 }
 
-// Rounded to two significant digits of its error.
-std::string with_error(double value, double error) {
-    const int digits =
-        error > 0.0 ? std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))) : 4;
-    return fmt::format("{:.{}f} \xC2\xB1 {:.{}f}", value, digits, error, digits);
-}
-
 std::string headline(const FitResult& result) {
     std::string words = words_of(result);
     const auto open = std::ranges::count(result.numbers, false, &FittedNumber::is_determined);
@@ -74,7 +67,7 @@ std::vector<PagePart> numbers(const FitResult& result) {
         table.rows.push_back({.cells = {one.key,
                                         plain(one.start),
                                         fmt::format("\xC2\xB1 {:.2g}", one.spread),
-                                        with_error(one.value, one.error),
+                                        with_error(one, "\xC2\xB1"),
                                         one.is_determined ? "" : "not determined"}});
         if (!one.is_determined) open.emplace_back(words_of(one) + ".");
     }

@@ -147,11 +147,13 @@ class Problem {
                      .most = kTurn});
             }
             if (state_.power[s] <= 0.0) continue;
+            const std::string unit = power_key(text_, rig_.strobes[s].name);
             add("power",
                 {.at = {FitPart::Power, s},
-                 .key = key + ".power",
+                 .key = unit,
                  .spread = word_named("power").spread,
-                 .is_log = true});
+                 .is_log = true,
+                 .per_unit = text_.number(unit).value_or(1.0) / state_.power[s]});
         }
     }
 
@@ -369,6 +371,13 @@ std::vector<FitPlaceInState> FitProblem::places() const {
     std::vector<FitPlaceInState> places;
     for (const FitNumber& number : numbers) places.push_back(number.at);
     return places;
+}
+
+std::string power_key(const RigText& text, const std::string& strobe) {
+    const std::string key = "strobe." + strobe;
+    for (const char* unit : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
+        if (text.has(key + unit)) return key + unit;
+    return key + ".power";
 }
 
 void require_fit_options(const RigText& text, const FitOptions& options) {

@@ -43,7 +43,7 @@ struct FitOptions {
 
 struct FitNumber {
     FitPlaceInState at{};
-    std::string key{};   // strobe.fore.power
+    std::string key{};   // strobe.fore.power; in lumens, strobe.fore.luminous_flux_lm
     std::string word{};  // power: names it in options
     double spread = 1.0;
     bool is_log = false;
@@ -70,6 +70,9 @@ struct FitProblem {
     [[nodiscard]] FitState state_at(const Eigen::VectorXd& x) const;
     [[nodiscard]] std::vector<FitPlaceInState> places() const;
 };
+
+// The key of a strobe's power in the rig's own unit, such as strobe.fore.luminous_flux_lm.
+[[nodiscard]] std::string power_key(const RigText& text, const std::string& strobe);
 
 // An InputError for an unknown word or key, for options about numbers that are not fitted, and if
 // there is nothing to fit.

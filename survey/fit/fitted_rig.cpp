@@ -69,7 +69,6 @@ void erase_orphans(const Rig& rig, RigText& text) {
     }
 }
 
-// Images do not determine the common scale of the powers: their sum is unchanged.
 void set_strobes(const RigText& rig_text,
                  const Rig& rig,
                  const FitState& state,
@@ -77,12 +76,7 @@ void set_strobes(const RigText& rig_text,
                  RigText& text) {
     std::vector<FitBeam::Fitted> beams;
     for (const FitBeam& beam : state.beams) beams.push_back(beam.fitted());
-    double all = 0.0;
-    double was = 0.0;
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        all += state.power[s] * beams[state.beam_of[s]].flux;
-        was += rig.strobes[s].power;
-    }
+    const std::vector<double> powers = powers_in(state, rig);
     std::vector<bool> is_written(beams.size(), false);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
@@ -95,14 +89,10 @@ void set_strobes(const RigText& rig_text,
             is_written[b] = true;
             text.set(key + ".beam", name);
         }
-        const double power = state.power[s] * beams[b].flux * was / all;
-        if (strobe.power > 0.0 && power != strobe.power) {
-            // In the rig's own unit.
-            std::string unit = ".power";
-            for (const char* told : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
-                if (text.has(key + told)) unit = told;
-            const double told = rig_text.number(key + unit).value_or(1.0);
-            text.set(key + unit, rounded(told * power / strobe.power));
+        if (strobe.power > 0.0 && powers[s] != strobe.power) {
+            const std::string unit = power_key(rig_text, strobe.name);
+            const double told = rig_text.number(unit).value_or(1.0);
+            text.set(unit, rounded(told * powers[s] / strobe.power));
         }
         if (state.aim_rad[s][0] == 0.0 && state.aim_rad[s][1] == 0.0) continue;
         const Eigen::Vector3d axis = aimed_axis(rig, state.aim_rad[s], s);

@@ -84,7 +84,7 @@ class CorrectCommand : public CommandTest {
         std::vector<double> numbers = tracer.rows(0, kHeight);
         if (exposure_ == 0.0) exposure_ = peak / kPatch / std::ranges::max(numbers);
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            numbers[i] *= exposure_ * (is_patch(i % kPixels) ? kPatch : 1.0);
+            numbers[i] *= exposure_ * (has_patch_ && is_patch(i % kPixels) ? kPatch : 1.0);
         }
         return numbers;
     }
@@ -125,6 +125,15 @@ class CorrectCommand : public CommandTest {
         return sleds;
     }
 
+    // One of them level, which tells nothing of its angles.
+    void take_dive() {
+        constexpr int kImages = 14;
+        for (int i = 0; i < kImages; ++i) {
+            take(fmt::format("{:02}.tif", i),
+                 {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
+        }
+    }
+
     static Arguments correct(const Arguments& more, const std::string& output = "out") {
         Arguments arguments = kCorrect + ("-o " + output);
         // In place of the same option here.
@@ -144,6 +153,7 @@ class CorrectCommand : public CommandTest {
         return why;
     }
 
+    bool has_patch_ = true;
     mutable double exposure_ = 0.0;
     std::string lines_;
 };
@@ -516,11 +526,8 @@ TEST_F(CorrectCommand, ACutNavigationIsWarnedOf) {
 // Numbers that the images contradict: a warning, with --strict an error, and no gain that outlives
 // them.
 TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
-    constexpr int kImages = 14;  // one of them level, which tells nothing of its angles
-    for (int i = 0; i < kImages; ++i) {
-        take(fmt::format("{:02}.tif", i),
-             {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
-    }
+    has_patch_ = false;
+    take_dive();
     const std::string right = lines_;
     const auto told = [&](const std::string& navigation, const Arguments& more) {
         write_file(path("nav.eic"), navigation);
@@ -565,6 +572,26 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     take("low.tif", {1.2, 0.0, 0.0});
     EXPECT_EQ(told(lines_, "--strict"), "");
     EXPECT_EQ(told(lines_, "--white-level 65535"), "white-level");
+}
+
+// No floor has the same patch in each image: it is the light's.
+TEST_F(CorrectCommand, WhatStaysInPlaceIsTheLights) {
+    take_dive();
+    const CommandResult run = done(correct("--report"));
+    const Json notes = json_in("out/correction.json");
+    ASSERT_EQ(notes["looks_wrong"].size(), 1U);
+    EXPECT_EQ(notes["looks_wrong"][0]["about"], "pattern");
+    EXPECT_EQ(notes["pattern"]["images"], 14);
+    EXPECT_TRUE(has(run.out, "  a fixed pattern of "));
+    EXPECT_TRUE(has(text_of("out/report.html"), "What stays in place"));
+    const double share = 64.0 / kPixels;
+    // The patch's edge lies within cells, and in the dark stray light is allowed for.
+    constexpr double kOfCells = 0.3;
+    const double rms = std::log(kPatch) * std::sqrt(share * (1.0 - share));
+    EXPECT_NEAR(notes["pattern"]["rms"].get<double>(), rms, kOfCells * rms);
+    // It hardly moves medians: the gain is kept for images that come later.
+    take("later.tif", {2.0, 0.0, 0.0});
+    EXPECT_TRUE(has(done(correct({})).out, "1 image corrected"));
 }
 
 // What each option makes of poses is NavigationFile's concern: here each reaches it, and is noted.

@@ -76,11 +76,11 @@ Drawn draw(std::uint64_t seed, double contrast, int images) {
     return drawn;
 }
 
-// What is looked for and known; powers less what they have in common.
+// What is looked for and known; powers have the sum of the rig that the fit begins with.
 std::optional<double> truth_of(const Drawn& drawn, const FittedNumber& one) {
-    const double half = std::sqrt(drawn.numbers.aft_power);
-    if (one.key == "strobe.fore.power") return 1.0 / half;
-    if (one.key == "strobe.aft.power") return half;
+    const double all = 1.0 + drawn.numbers.aft_power;
+    if (one.key == "strobe.fore.power") return 2.0 / all;
+    if (one.key == "strobe.aft.power") return 2.0 * drawn.numbers.aft_power / all;
     if (one.key == "water.multiple") return drawn.numbers.multiple;
     for (std::size_t s = 0; s < 2; ++s) {
         const std::string aim = s == 0 ? "strobe.fore.aim_" : "strobe.aft.aim_";
@@ -127,9 +127,12 @@ TEST(FitErrors, PowersAreThoseOfTheRigTogether) {
     Eigen::VectorXd brighter = Eigen::VectorXd::Zero(5);
     for (std::size_t k = 0; k < 5; ++k)
         brighter(static_cast<Eigen::Index>(k)) = problem.numbers[k].word == "power" ? 0.3 : 0.0;
-    EXPECT_LT((without_common_power(problem) * brighter).norm(), 1e-15);
+    const Eigen::MatrixXd keep = without_common_power(problem, {0.5, 1.5});
+    EXPECT_LT((keep * brighter).norm(), 1e-15);
     brighter = Eigen::VectorXd::Ones(5) - brighter / 0.3;
-    EXPECT_EQ(without_common_power(problem) * brighter, brighter);
+    EXPECT_EQ(keep * brighter, brighter);
+    // d ln(P0 / (P0 + P1)) / d ln P0 = P1 / (P0 + P1).
+    EXPECT_NEAR(keep(0, 0), 0.75, 1e-15);
 }
 
 // A fit's pieces at the rig that made the images.
@@ -183,11 +186,15 @@ TEST(FitErrors, DispersionIsOneOfWhiteNoise) {
 TEST(FitErrors, AreWidenedByWhatHalvesDifferBy) {
     const AtTheTruth at(forty_maps());
     const auto errors_by = [&](double apart) {
-        return errors_of(at.objective, at.problem, at.point, [&](std::size_t, std::size_t which) {
-            FitPoint half = at.point;
-            half.x.array() += which == 1 ? apart : 0.0;
-            return half;
-        });
+        return errors_of(at.objective,
+                         at.problem,
+                         at.point,
+                         at.problem.start.power,
+                         [&](std::size_t, std::size_t which) {
+                             FitPoint half = at.point;
+                             half.x.array() += which == 1 ? apart : 0.0;
+                             return half;
+                         });
     };
     constexpr double kFar = 30.0;
     constexpr double kRounding = 1e-9;

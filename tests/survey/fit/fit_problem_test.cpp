@@ -130,6 +130,17 @@ TEST(FitProblem, FactorsAreSearchedForByTheirLogarithm) {
     EXPECT_DOUBLE_EQ(aft.shown_slope(std::log(1.5)), 1.2);
 }
 
+TEST(FitProblem, TellsALampInTheRigsUnits) {
+    RigText rig = fit_rig({});
+    rig.erase("strobe.aft.power");
+    rig.set("strobe.aft.luminous_flux_lm", 12000.0);
+    const FitProblem problem = problem_of(free({"power"}), rig);
+    const FitNumber& aft = number_of(problem, "strobe.aft.luminous_flux_lm");
+    EXPECT_NEAR(aft.shown(0.0), 12000.0, 1e-9);
+    EXPECT_NEAR(aft.shown(std::log(1.5)), 18000.0, 1e-9);
+    EXPECT_NEAR(number_of(problem, "strobe.fore.power").shown(0.0), 1.0, 1e-15);
+}
+
 TEST(FitProblem, TellsALensInTheRigsUnits) {
     const RigText rig{std::filesystem::path(APHOTIC_SOURCE_DIR "/scenes/habcam-optics.toml")};
     FitOptions options = free({"beam"});

@@ -123,6 +123,10 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const FittedNumber& aft = number_of(result, "strobe.aft.power");
     EXPECT_NEAR(
         aft.value / number_of(result, "strobe.fore.power").value, 0.8, 2.0 * kSigmas * aft.error);
+    // They are told as the fitted rig has them: their sum is the first rig's.
+    double sum = 0.0;
+    for (const Strobe& strobe : guess().rig().strobes) sum += strobe.power;
+    EXPECT_NEAR(aft.value + number_of(result, "strobe.fore.power").value, sum, 1e-9);
     // And as a rig it shines as the truth does, higher than any image was.
     const Sled high{.altitude_m = 3.0};
     EXPECT_LT(off_at(guess(), result, truth, high), kPredicted);
