@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/interruption.h"
+#include "base/number.h"
 #include "base/printable.h"
 #include "base/progress.h"
 #include "base/words.h"
@@ -30,6 +31,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -141,11 +143,28 @@ aphotic::PageOrigin page_origin(int argc, char** argv) {
                                 static_cast<unsigned>(day.day()))};
 }
 
+// CLI11 counts values; which ones are missing is in the option's own pattern, such as LEAST,MOST.
+std::string words_of(const CLI::App& app, const CLI::Error& error) {
+    static const std::regex kMismatch("(-[^:]*): At (least|most) [0-9]+ .* received ([0-9]+)");
+    const std::string words = error.what();
+    std::smatch parts;
+    if (!std::regex_match(words, parts, kMismatch)) return words;
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    const CLI::App& command = chosen.empty() ? app : *chosen.back();
+    const CLI::Option* option = command.get_option_no_throw(parts[1].str());
+    if (option == nullptr || option->get_option_text().empty()) return words;
+    return fmt::format(
+        "{}: found {}; allowed: {}",
+        parts[1].str(),
+        aphotic::counted(*aphotic::read_number<std::size_t>(parts[3].str()), "value"),
+        option->get_option_text());
+}
+
 std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
     std::string unknown = unknown_words(*app);
     if (!unknown.empty()) return unknown;
     return fmt::format("{}\nRun with {} for more information.\n",
-                       aphotic::shown_text(error.what()),
+                       aphotic::shown_text(words_of(*app, error)),
                        app->get_help_ptr()->get_name());
 }
 

@@ -83,7 +83,8 @@ void print(const MadeSurvey& made) {
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
         "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers per electron\n"
-        "  {}, and as instruments measure it {}, by the time of each image {}\n",
+        "  {}: true poses\n"
+        "  {}: as measured, by image; {}: by time\n",
         survey.rig.title,
         counted(survey.legs.size(), "image"),
         folder,

@@ -410,11 +410,10 @@ void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folde
 
 void print_doubts(const RunOutcome& outcome) {
     constexpr double kPercent = 100.0;
-    say("  doubtful pixels:");
-    for (const auto& [name, bit] : kDoubts) {
-        say(" {} {:.3g} %", name, kPercent * outcome.doubtful_share(name));
-    }
-    say("\n");
+    std::vector<std::string> shares;
+    for (const auto& [name, bit] : kDoubts)
+        shares.push_back(fmt::format("{} {:.3g} %", name, kPercent * outcome.doubtful_share(name)));
+    say("  doubtful pixels: {}\n", fmt::join(shares, ", "));
 }
 
 ExitStatus status_of_skips(std::size_t skipped, std::size_t images, const SurveyInput& input) {

@@ -131,6 +131,11 @@ void require_same(const SettingsJson& settings, const fs::path& notes) {
         const nlohmann::json asked = nlohmann::json::parse(value.dump());
         const nlohmann::json there = found.is_object() ? found.value(key, nlohmann::json()) : found;
         if (asked == there) continue;
+        if (key == "rig_sha256")
+            throw InputError(
+                "{}: found a survey of another rig; allowed: the same file with the "
+                "same --set, or another folder",
+                notes.string());
         throw InputError("{}: found a survey with {} {}; allowed: {}, or another folder",
                          notes.string(),
                          key,
