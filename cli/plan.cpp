@@ -9,6 +9,7 @@
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/terminal.h"
+#include "light/dispersion.h"
 #include "report/plot.h"
 #include "report/svg.h"
 #include "rig/file/rig_template.h"
@@ -160,7 +161,7 @@ Json to_json(const Planned& made) {
     if (manifest.rig_settings) json["rig_settings"] = manifest.rig_settings->keys;
     put_promises(json, manifest);
     put_model_error(json, planned.model);
-    if (planned.rig.camera.port) {
+    if (disperses(planned.rig)) {
         const PortCost cost = port_cost(planned);
         json["port"] = {{"spread_px", cost.spread_px},
                         {"shared_px", cost.shared_px},
@@ -258,7 +259,7 @@ void print(const Planned& made) {
     }
     if (const std::string veil = povray_veil_in_words(manifest); !veil.empty()) say("{}\n", veil);
     print_wavelengths(manifest);
-    if (planned.rig.camera.port) print_port(planned);
+    if (disperses(planned.rig)) print_port(planned);
     print_needs(planned_needs(scenes), manifest.frames.size(), manifest.scene.has_value());
     if (!plan.omissions.empty()) say("\nLeft out:\n");
     for (const Omission& omission : plan.omissions) {

@@ -5,6 +5,7 @@
 #include "cli/option_checks.h"
 #include "cli/option_words.h"
 #include "cli/terminal.h"
+#include "rig/file/rig_cameras.h"
 #include "rig/file/rig_reader.h"
 #include "rig/plausibility.h"
 
@@ -21,6 +22,15 @@ namespace aphotic::cli {
 namespace {
 
 std::vector<std::string> set_keys;
+
+constexpr std::string_view kCamera = "camera=";
+
+// Of a rig with several; --camera is kept as a setting like others.
+std::optional<std::string> chosen_camera() {
+    const auto chosen = std::ranges::find_if(
+        set_keys, [](const std::string& setting) { return setting.starts_with(kCamera); });
+    return chosen == set_keys.end() ? std::nullopt : std::optional(chosen->substr(kCamera.size()));
+}
 
 // For commands that make images of a rig; for others the given images determine the size.
 constexpr std::array<std::string_view, 8> kScaled{
@@ -48,6 +58,10 @@ void add_set_option(CLI::App& app) {
         ->allow_extra_args(false)
         ->check(CLI::Validator(setting_fault, ""))
         ->needs(rig);
+    const auto choose = [](const std::string& name) {
+        set_keys.push_back(std::string(kCamera) + name);
+    };
+    add_option_function<std::string>(app, "--camera", choose)->needs(rig);
     if (std::ranges::find(kScaled, app.get_name()) == kScaled.end()) return;
     const auto scale = [](const double& factor) {
         set_keys.push_back(fmt::format("camera.scale={}", factor));
@@ -63,9 +77,12 @@ std::optional<ManifestSettings> rig_settings() {
 }
 
 RigText read_rig_text_as_set(const std::string& file) {
-    RigText text{std::filesystem::path(file)};
+    const std::filesystem::path place(file);
+    const auto camera = chosen_camera();
+    RigText text = camera ? rig_of_camera(place, *camera) : RigText(place);
     try {
         for (const std::string& setting : set_keys) {
+            if (setting.starts_with(kCamera)) continue;
             const std::size_t sign = setting.find('=');
             text.set_toml(setting.substr(0, sign), setting.substr(sign + 1));
         }

@@ -111,7 +111,7 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
 }
 
 std::vector<double> place_rays_nm(const Rig& rig) {
-    if (!rig.camera.port) return index_nodes_nm(rig);
+    if (!disperses(rig)) return index_nodes_nm(rig);
     const std::vector<double> nodes_nm = index_nodes_nm(rig, kLooks);
     std::vector<double> looks;
     for (const std::size_t node : kLookOrder) looks.push_back(nodes_nm[node]);
@@ -119,7 +119,7 @@ std::vector<double> place_rays_nm(const Rig& rig) {
 }
 
 CameraRays::CameraRays(const Rig& rig, int threads)
-    : has_port_(rig.camera.port.has_value()), table_(rig, place_rays_nm(rig), threads) {}
+    : has_port_(disperses(rig)), table_(rig, place_rays_nm(rig), threads) {}
 
 CameraRays::CameraRays(const Rig& rig, double lambda_nm, int threads)
     : has_port_(false), table_(rig, {lambda_nm}, threads) {}

@@ -35,7 +35,7 @@
 #include "light/beam_light.h"
 #include "light/floor_arrival.h"
 #include "light/floor_ray.h"
-#include "light/index_nodes.h"
+#include "light/dispersion.h"
 #include "light/lane_ray.h"
 #include "light/ray_table.h"
 #include "light/signal_table.h"

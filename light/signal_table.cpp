@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/signal_table.h"
 
-#include "light/index_nodes.h"
+#include "light/dispersion.h"
 #include "spectral/light_family.h"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ LampSignal signal_of(const Rig& rig,
         signal.diffuse.push_back(tabulate(lights.diffuse));
         if (has_highlight) signal.highlight.push_back(tabulate(lights.highlight));
     }
-    if (!rig.camera.port) return signal;
+    if (!disperses(rig)) return signal;
     signal.dispersed_diffuse = spectral_sum(rig.water, dispersed, lights.diffuse);
     if (has_highlight)
         signal.dispersed_highlight = spectral_sum(rig.water, dispersed, lights.highlight);
@@ -99,7 +99,7 @@ SignalTable signal_table(const Rig& rig, const PathRange& paths, double error) {
     const Grid grid = grid_of(kGridShare * error);
     table.grid_size = grid.size();
     Grid dispersed;
-    if (rig.camera.port) {
+    if (disperses(rig)) {
         dispersed = seen_of(grid_of(kDispersedShare * error));
         table.ray_nodes_nm = index_nodes_nm(rig, kRayNodes);
         for (const WeightedWavelength& node : dispersed) {
@@ -108,7 +108,7 @@ SignalTable signal_table(const Rig& rig, const PathRange& paths, double error) {
                 shares[j] = index_share(rig, table.ray_nodes_nm, j, node.lambda_nm);
         }
     }
-    const double table_error = kTableShare * error / (rig.camera.port ? kLebesgue : 1.0);
+    const double table_error = kTableShare * error / (disperses(rig) ? kLebesgue : 1.0);
     const auto take_in = [&](const LightOf& light) {
         const PathSteps steps =
             path_steps(spectral_sum(rig.water, grid, light), paths, table_error);

@@ -2,7 +2,7 @@
 #include "light/veil_map.h"
 
 #include "light/beam_width.h"
-#include "light/index_nodes.h"
+#include "light/dispersion.h"
 #include "light/signal_table.h"
 #include "light/tile_cone.h"
 #include "rig/geometry.h"
@@ -90,7 +90,7 @@ VeilMap::VeilMap(const Rig& rig,
     if (has_signals) {
         grids_.push_back(grid_of_signals(rig, paths, error));
         index_nodes_nm_ = place_rays_nm(rig);
-        index_nodes_nm_.resize(rig.camera.port ? kIndexNodes : 1);
+        index_nodes_nm_.resize(disperses(rig) ? kIndexNodes : 1);
     } else {
         index_nodes_nm_ = {lambda_nm.front()};
     }

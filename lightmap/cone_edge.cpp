@@ -2,6 +2,7 @@
 #include "lightmap/cone_edge.h"
 
 #include "image/image_size.h"
+#include "light/dispersion.h"
 #include "light/floor_ray.h"
 #include "light/tile_cone.h"
 #include "rig/geometry.h"
@@ -30,7 +31,7 @@ std::vector<Vector3d> places_of(const Strobe& strobe) {
 }
 
 std::vector<double> ends_nm(const Rig& rig) {
-    if (!rig.camera.port) return {rig.camera.range.first_nm};
+    if (!disperses(rig)) return {rig.camera.range.first_nm};
     return {rig.camera.range.first_nm, rig.camera.range.last_nm};
 }
 
@@ -64,7 +65,7 @@ ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), rays_(rig, ends_nm(rig), 1) {
 void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_t>& mask) const {
     const Plane floor = floor_plane(sled);
     std::array<WaterRay, 2> found;
-    const std::span<WaterRay> ends = std::span(found).first(rig_.camera.port ? 2 : 1);
+    const std::span<WaterRay> ends = std::span(found).first(disperses(rig_) ? 2 : 1);
     const auto look = [&](double x, double y) {
         rays_.look(tile.column + x + 0.5, tile.row + y + 0.5, ends);
     };

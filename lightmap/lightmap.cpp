@@ -8,6 +8,7 @@
 #include "image/camera_image.h"
 #include "image/image_size.h"
 #include "light/beam_light.h"
+#include "light/dispersion.h"
 #include "light/floor_image.h"
 #include "rig/geometry.h"
 #include "spectral/light_family.h"
@@ -130,7 +131,7 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kRounding = 12.0 * 0x1p-24;
     constexpr double kVignettingRounding = 2.0 * 0x1p-24;  // of the factor and of the product
     constexpr double kOverTheIndex = 1e-4;
-    const bool has_port = rig.camera.port.has_value();
+    const bool has_port = disperses(rig);
     const bool has_veil = rig.water.scatters() && options.has_veil;
     const double off_the_veil =
         has_veil ? options.veil_tolerance + veil_error(rig, map_veil_points(rig, options)) : 0.0;

@@ -3,14 +3,17 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "python/bindings.h"
+#include "rig/file/rig_cameras.h"
 #include "spectral/curve_loader.h"
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace aphotic::python {
 namespace {
@@ -78,9 +81,12 @@ void bind_rig(nb::module_& module) {
         module, "Rig", "A sled, its camera, strobes, water and floor (docs/reference/rig.md).")
         .def_static(
             "load",
-            [](const fs::path& file) { return TextRig(RigText(file)); },
+            [](const fs::path& file, const std::optional<std::string>& camera) {
+                return TextRig(camera ? rig_of_camera(file, *camera) : RigText(file));
+            },
             nb::arg("file"),
-            "Read a rig file (TOML).")
+            nb::arg("camera") = nb::none(),
+            "Read a rig file (TOML), as one of its cameras sees it if it has several.")
         .def_static(
             "parse",
             [](const std::string& toml, const fs::path& folder) {

@@ -75,7 +75,7 @@ const std::vector<Usual>& all_usual() {
 }
 
 // A number of the rig's file, and its position.
-struct Place {
+struct KeyPlace {
     std::string key;      // strobe[1].position_m
     std::string pattern;  // strobe[].position_m
     int line = 0;
@@ -137,9 +137,9 @@ class Doubter {
     std::vector<Doubt> doubts();
 
   private:
-    void add(const Place& place, std::string what);
-    void judge(const toml::node& node, const Place& place);
-    void judge_number(double value, const Place& place);
+    void add(const KeyPlace& place, std::string what);
+    void judge(const toml::node& node, const KeyPlace& place);
+    void judge_number(double value, const KeyPlace& place);
     void judge_sled(const toml::table& root);
     void judge_view(const toml::table& root);
     void judge_levels(const toml::table& root);
@@ -153,14 +153,14 @@ class Doubter {
     std::vector<Doubt> doubts_;
     std::vector<std::set<std::string>> more_;  // for each doubt: the keys that it covers
     std::vector<std::string> patterns_;        // for each doubt
-    std::vector<std::pair<Place, double>> tilts_;
+    std::vector<std::pair<KeyPlace, double>> tilts_;
 };
 
 int source_line(const toml::node* node) {
     return node == nullptr ? 0 : static_cast<int>(node->source().begin.line);
 }
 
-void Doubter::add(const Place& place, std::string what) {
+void Doubter::add(const KeyPlace& place, std::string what) {
     // Strobes with the same mistake share one line.
     const auto same = std::ranges::find(patterns_, place.pattern);
     if (same != patterns_.end()) {
@@ -172,7 +172,7 @@ void Doubter::add(const Place& place, std::string what) {
     doubts_.push_back({.key = place.key, .line = place.line, .what = std::move(what)});
 }
 
-void Doubter::judge_number(double value, const Place& place) {
+void Doubter::judge_number(double value, const KeyPlace& place) {
     if (place.pattern == "strobe[].aim.tilt_deg") tilts_.emplace_back(place, value);
     if (place.pattern == "camera.orientation_deg" || place.pattern == "beam.*.turn_deg") {
         if (auto what = doubt_of_turn(value)) add(place, std::move(*what));
@@ -182,7 +182,7 @@ void Doubter::judge_number(double value, const Place& place) {
     if (auto what = doubt_of(value, *usual)) add(place, std::move(*what));
 }
 
-void Doubter::judge(const toml::node& node, const Place& place) {
+void Doubter::judge(const toml::node& node, const KeyPlace& place) {
     if (const auto* table = node.as_table()) {
         const bool is_named = place.pattern == "beam";
         for (const auto& [key, child] : *table) {
@@ -195,7 +195,7 @@ void Doubter::judge(const toml::node& node, const Place& place) {
     } else if (const auto* array = node.as_array()) {
         const bool is_of_tables = array->is_array_of_tables();
         for (std::size_t i = 0; i < array->size(); ++i) {
-            Place at = place;
+            KeyPlace at = place;
             if (is_of_tables) {
                 at.key += fmt::format("[{}]", i);
                 at.pattern += "[]";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/certificate.h"
 
+#include "light/dispersion.h"
 #include "light/floor_arrival.h"
 #include "scene_gen/light_paths.h"
 #include "spectral/panel_quadrature.h"
@@ -156,7 +157,7 @@ void certify(const Rig& rig,
     const auto family = certified_quality(
         rig.camera.sensor, fitter.family(), rig.camera.range, rule.wavelengths, frames);
     std::array<double, kChannels> port{};
-    if (rig.camera.port && !in_view.empty()) port = port_error(rig, in_view);
+    if (disperses(rig) && !in_view.empty()) port = port_error(rig, in_view);
     for (std::size_t c = 0; c < kChannels; ++c) {
         RuleQuality& quality = rule.quality[c];
         const double shape = family[c].amplification > 0.0 ? fitter.tilt_shape_error() : 0.0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
+#include "light/dispersion.h"
 #include "light/floor_arrival.h"
 #include "rig/geometry.h"
 #include "rig/solid.h"
-#include "scene_gen/frame_groups.h"
 
 #include <algorithm>
 #include <array>
@@ -127,7 +127,7 @@ LightFamily family_of(const Rig& rig, std::vector<std::vector<Spectrum>> sources
             .water = rig.water,
             .shortest_path_m = paths.shortest_m,
             .longest_path_m = paths.longest_m,
-            .tilt = rig.camera.port ? std::optional(port_tilt(rig)) : std::nullopt};
+            .tilt = disperses(rig) ? std::optional(port_tilt(rig)) : std::nullopt};
 }
 
 std::vector<Spectrum> lamps_of(const Rig& rig) {

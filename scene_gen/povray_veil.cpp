@@ -2,6 +2,7 @@
 #include "scene_gen/povray_veil.h"
 
 #include "base/degrees.h"
+#include "light/dispersion.h"
 #include "light/veil.h"
 #include "spectral/phase_lobes.h"
 
@@ -157,7 +158,7 @@ double measured_error(const Rig& rig,
         std::vector<VeilNodes> nodes;
         for (std::size_t j = 0; j < wavelengths.size(); ++j) {
             const PlannedWavelength& w = wavelengths[j];
-            if (j == 0 || (rig.camera.port && w.index_nm != index_nm)) {
+            if (j == 0 || (disperses(rig) && w.index_nm != index_nm)) {
                 index_nm = w.index_nm;
                 sight = sight_of(rig, column, row, index_nm);
                 nodes =

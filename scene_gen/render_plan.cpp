@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/offered.h"
+#include "light/dispersion.h"
 #include "scene_gen/camera_rays.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/povray_veil.h"
@@ -51,7 +52,7 @@ LightFamily family_of(const Rig& rig, const PlanRequest& request) {
 // Behind a port, frames are counted instead of wavelengths: three wavelengths that cannot share a
 // frame cost three frames.
 int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
-    return rig.camera.port ? 1 : scene.wavelengths_per_frame;
+    return disperses(rig) ? 1 : scene.wavelengths_per_frame;
 }
 
 // The effect of a shift on an object has no bound.

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/offered.h"
+#include "light/dispersion.h"
 #include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
@@ -82,7 +83,7 @@ Rig with_lit_strobes_only(Rig rig) {
 // Behind a port the range includes the frames' wavelengths, even if another sensor does not cover
 // them.
 Rig covering_frames(Rig rig, const Manifest& manifest) {
-    if (!rig.camera.port) return rig;
+    if (!disperses(rig)) return rig;
     for (const PlannedWavelength& w : manifest.wavelengths) {
         rig.camera.range.first_nm = std::min(rig.camera.range.first_nm, w.index_nm);
         rig.camera.range.last_nm = std::max(rig.camera.range.last_nm, w.index_nm);

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/sha256.h"
 #include "image/exr.h"
+#include "light/dispersion.h"
 #include "light/veil_map.h"
 
 #include <algorithm>
@@ -48,12 +49,12 @@ std::vector<Planes> planes_of(const Rig& rig,
         return first;
     };
     std::vector<Planes> planes;
-    const std::size_t beside_signals = rig.camera.port ? 0 : kVeilPlanes - kChannels;
+    const std::size_t beside_signals = disperses(rig) ? 0 : kVeilPlanes - kChannels;
     planes.push_back({.veil = VeilMap(rig, paths, kTableError, points, take(beside_signals)),
                       .rays = CameraRays(rig, threads)});
     while (!rest.empty()) {
         const double nm = rest.front();
-        const auto next = take(rig.camera.port ? 1 : kVeilPlanes);
+        const auto next = take(disperses(rig) ? 1 : kVeilPlanes);
         planes.push_back({.veil = VeilMap(rig, paths, kTableError, points, next, false),
                           .rays = CameraRays(rig, nm, threads)});
     }

@@ -2,6 +2,7 @@
 #include "rig/beam/beam_figures.h"
 
 #include "base/degrees.h"
+#include "rig/beam/round_profile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,13 +60,6 @@ void find_extremes(const Beam& beam, BeamFigures& figures) {
             if (intensity > 0.0) figures.widest_rad = theta_rad;
         }
     }
-}
-
-bool is_round(const Beam& beam) {
-    if (std::holds_alternative<std::monostate>(beam.pattern)) return true;
-    const auto* table = std::get_if<BeamTable>(&beam.pattern);
-    return table != nullptr && table->angles == TableAngles::TypeC &&
-           table->horizontal_rad.size() == 1;
 }
 
 std::vector<double> steps_rad(double last_deg, double step_deg) {

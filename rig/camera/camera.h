@@ -37,7 +37,7 @@ struct Readout {
 enum class AltitudeIs { Axis, Plumb, Nearest };
 inline constexpr std::array<std::string_view, 3> kAltitudeWords{"axis", "plumb", "nearest"};
 
-// The transformation from the navigation's pose to the camera's (survey/navigation/vehicle_pose.h).
+// The transformation from the navigation's pose to the camera's (rig/vehicle_pose.h).
 // The vehicle's frame: x forward, y starboard, z down. Everything else in a rig is relative to the
 // camera.
 struct Mounting {

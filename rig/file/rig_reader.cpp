@@ -752,7 +752,23 @@ std::vector<Strobe> read_strobes(Section& top,
     return strobes;
 }
 
+// Several are a rig for each (rig_cameras.h).
+void require_one_camera(Section& top) {
+    const toml::array* cameras = top.required("camera", "a table [camera]").as_array();
+    if (cameras == nullptr) return;
+    std::vector<std::string> names;
+    for (const toml::node& camera : *cameras) {
+        const toml::table* table = camera.as_table();
+        if (table != nullptr) names.push_back((*table)["name"].value_or(std::string("?")));
+    }
+    top.fail_at("camera",
+                fmt::format("found {} cameras; allowed: one of them, by --camera {}",
+                            names.size(),
+                            fmt::join(names, " or ")));
+}
+
 Rig read_all(Section top, RigFiles files, std::string toml) {
+    require_one_camera(top);
     std::string title = top.text_or("title", "a string in quotes", "");
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit/fit_light.h"
 
+#include "light/dispersion.h"
 #include "light/floor_arrival.h"
 #include "light/floor_ray.h"
 #include "light/tile_fit.h"
@@ -454,7 +455,7 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places)
     : rig_(rig), places_(places), means_(means_over_blocks(places)) {
     const Camera& camera = rig.camera;
     std::vector<double> lambda_nm{0.5 * (camera.range.first_nm + camera.range.last_nm)};
-    if (camera.port) {
+    if (disperses(rig)) {
         lambda_nm.clear();
         for (std::size_t c = 0; c < kChannels; ++c)
             lambda_nm.push_back(mean_wavelength_nm(camera, c));

@@ -14,7 +14,7 @@
 
 #include "rig/rig.h"
 #include "survey/images/image_files.h"
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 
 #include <nlohmann/json_fwd.hpp>
 

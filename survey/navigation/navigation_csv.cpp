@@ -31,7 +31,7 @@ namespace {
 // file's origin, and down. phi, theta and psi (radians) turn north, east and down, in this order of
 // axes, into the stereo frame: X right in the image, Y to its bottom, Z along the axis. So the
 // downward direction has these parts in the camera's own frame, whose x points to the image's top
-// (vehicle_pose.h):
+// (rig/vehicle_pose.h):
 //
 //   (x, y, z) = (-cos theta sin phi, -sin theta, cos theta cos phi)
 //   pitch = -asin x        roll = atan2(y, z)

@@ -13,7 +13,7 @@
 #include "survey/navigation/image_time.h"
 #include "survey/navigation/navigation_csv.h"
 #include "survey/navigation/navigation_ifdo.h"
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,7 @@
 // the altitude range, are omitted: an altimeter that loses the floor leaves a gap, and not an
 // altitude between 2 m and 0.
 //
-// All other poses are the vehicle's and are converted to the camera's (vehicle_pose.h).
+// All other poses are the vehicle's and are converted to the camera's (rig/vehicle_pose.h).
 #pragma once
 
 #include "survey/images/image_files.h"

@@ -11,7 +11,7 @@
 // kLongestGap_s, the width of an altitude bin.
 #pragma once
 
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 
 #include <cstddef>
 #include <vector>

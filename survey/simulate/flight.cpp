@@ -4,7 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "survey/navigation/time_text.h"
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 #include "survey/simulate/random_draw.h"
 
 #include <fmt/format.h>

@@ -60,7 +60,7 @@ struct InstrumentErrors {
                                            std::uint64_t seed);
 
 // CSV as navigation_csv.h reads it. Its poses are the vehicle's: from them the camera's follow by
-// the mounting (vehicle_pose.h).
+// the mounting (rig/vehicle_pose.h).
 [[nodiscard]] std::string navigation_text(const std::vector<Leg>& legs, const std::string& suffix);
 
 // The same without names, by the time of each image in UTC: one image per second from

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/render_plan.h"
 
+#include "light/dispersion.h"
 #include "support/random_rig.h"
 
 #include "base/error.h"

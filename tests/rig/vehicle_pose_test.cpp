@@ -2,7 +2,7 @@
 //
 // The camera's pose on the vehicle, against rotation matrices written out by hand, rays traced to
 // the floor, and closed forms.
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 
 #include "base/error.h"
 #include "support/dice.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "light/index_nodes.h"
+#include "light/dispersion.h"
 
+#include "rig/geometry.h"
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -19,10 +23,26 @@ double wavelength_of_index(const Rig& rig, double index) {
     return between.first_nm;
 }
 
+// The intersection with the plane of the ray of a point `inward_px` from the corner, towards the
+// middle.
+Eigen::Vector3d corner_point_m(const Rig& rig,
+                               const std::array<double, 2>& corner,
+                               double inward_px,
+                               double lambda_nm) {
+    const Camera& camera = rig.camera;
+    const double share = inward_px / std::hypot(0.5 * camera.width_px, 0.5 * camera.height_px);
+    const WaterRay ray = pixel_ray(rig,
+                                   corner[0] + share * (0.5 * camera.width_px - corner[0]),
+                                   corner[1] + share * (0.5 * camera.height_px - corner[1]),
+                                   lambda_nm);
+    const Plane plane{.point_m = {0.0, 0.0, rig.sled.altitude_m}, .normal = {0.0, 0.0, -1.0}};
+    return ray.origin_m + distance_to(plane, ray).value_or(0.0) * ray.direction;
+}
+
 }  // namespace
 
 std::vector<double> index_nodes_nm(const Rig& rig, std::size_t nodes) {
-    if (!rig.camera.port) return {rig.camera.range.first_nm};
+    if (!disperses(rig)) return {rig.camera.range.first_nm};
     const double first = rig.water.refractive_index(rig.camera.range.first_nm);
     const double last = rig.water.refractive_index(rig.camera.range.last_nm);
     std::vector<double> nodes_nm;
@@ -45,6 +65,18 @@ double index_share(const Rig& rig,
                  (rig.water.refractive_index(nodes_nm[node]) - n_m);
     }
     return value;
+}
+
+double corner_shift_px(const Rig& rig, double lambda_a_nm, double lambda_b_nm) {
+    if (!disperses(rig)) return 0.0;
+    double most_px = 0.0;
+    for (const std::array<double, 2>& corner : corners_to_ask(rig.camera)) {
+        const Eigen::Vector3d from_m = corner_point_m(rig, corner, 0.0, lambda_b_nm);
+        const double pixel_m = (from_m - corner_point_m(rig, corner, 1.0, lambda_b_nm)).norm();
+        const double shift_m = (corner_point_m(rig, corner, 0.0, lambda_a_nm) - from_m).norm();
+        if (pixel_m > 0.0) most_px = std::max(most_px, shift_m / pixel_m);
+    }
+    return most_px;
 }
 
 }  // namespace aphotic

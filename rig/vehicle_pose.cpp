@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "survey/navigation/vehicle_pose.h"
+#include "rig/vehicle_pose.h"
 
 #include "base/degrees.h"
 #include "base/error.h"

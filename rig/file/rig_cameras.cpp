@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/file/rig_cameras.h"
+
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "base/error.h"
+#include "rig/beam/beam.h"
+#include "rig/beam/round_profile.h"
+#include "rig/vehicle_pose.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Lines of the text, from 1, both included.
+struct Lines {
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+
+std::size_t last_line(const toml::node& node) {
+    std::size_t last = node.source().end.line;
+    if (const toml::table* table = node.as_table(); table != nullptr)
+        for (auto&& [key, value] : *table) last = std::max(last, last_line(value));
+    return last;
+}
+
+struct NamedCamera {
+    std::string name;
+    std::size_t name_line = 0;
+    Lines lines;
+};
+
+std::vector<NamedCamera> cameras_in(const toml::table& root, const std::string& file) {
+    const toml::array* array = root["camera"].as_array();
+    std::vector<NamedCamera> cameras;
+    if (array == nullptr) return cameras;
+    for (const toml::node& node : *array) {
+        const toml::table* table = node.as_table();
+        const auto name = table == nullptr ? std::nullopt : (*table)["name"].value<std::string>();
+        if (!name || table->is_inline() ||
+            std::ranges::count(cameras, *name, &NamedCamera::name) > 0)
+            throw InputError(
+                "{}:{}: camera: allowed: tables [[camera]], each with a name of its own",
+                file,
+                node.source().begin.line);
+        cameras.push_back({.name = *name,
+                           .name_line = table->get("name")->source().begin.line,
+                           .lines = {node.source().begin.line, last_line(node)}});
+    }
+    return cameras;
+}
+
+// The text in which this camera is the only one, as [camera]. Lines keep their numbers, for
+// messages.
+std::string alone(const std::string& toml,
+                  const std::vector<NamedCamera>& cameras,
+                  const NamedCamera& chosen) {
+    std::string text;
+    std::istringstream lines(toml);
+    std::string line;
+    for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        const bool is_left_out = std::ranges::any_of(cameras, [&](const NamedCamera& one) {
+            return &one != &chosen && number >= one.lines.first && number <= one.lines.last;
+        });
+        if (is_left_out || number == chosen.name_line) line.clear();
+        if (number == chosen.lines.first) line = "[camera]";
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::vector<double> numbers_of(const Vector3d& vector) {
+    return {vector.begin(), vector.end()};
+}
+
+// From the first camera's frame to the chosen one's.
+struct Change {
+    Matrix3d turn;
+    Vector3d shift_m;
+
+    Change(const Mounting& first, const Mounting& chosen) {
+        const Matrix3d into = turn_by(chosen.roll_pitch_yaw_rad).transpose();
+        turn = into * turn_by(first.roll_pitch_yaw_rad);
+        shift_m = into * (first.position_m - chosen.position_m);
+    }
+    // By which a pattern turns about its axis, more than its axis turns.
+    [[nodiscard]] double twist_rad(const Vector3d& axis) const {
+        const Vector3d along = turn * frame_about(axis).along;
+        const BeamFrame frame = frame_about(turn * axis);
+        return std::atan2(along.dot(frame.across), along.dot(frame.along));
+    }
+};
+
+void put_strobe(const Strobe& strobe, const Change& change, RigText& text) {
+    constexpr double kRounding_rad = 1e-9;
+    const std::string key = "strobe." + strobe.name;
+    const Vector3d axis = change.turn * strobe.axis;
+    text.set(key + ".position_m", numbers_of(change.turn * strobe.position_m + change.shift_m));
+    text.erase(key + ".aim");
+    text.set(key + ".direction", numbers_of(axis));
+    const double twist_rad = change.twist_rad(strobe.axis);
+    if (std::abs(twist_rad) < kRounding_rad) return;
+    if (strobe.emitter)
+        throw InputError(
+            "strobe '{}' has an emitter; allowed: cameras that are not turned against the first "
+            "one, or lamps that are points",
+            strobe.name);
+    if (is_round(strobe.beam)) return;
+    const std::string own = fmt::format("{}-{}", strobe.beam.name, strobe.name);
+    text.copy(text, "beam." + strobe.beam.name, "beam." + own);
+    text.set("beam." + own + ".turn_deg", (strobe.beam.turn_rad + twist_rad) * kDegreesPerRadian);
+    text.set(key + ".beam", own);
+}
+
+}  // namespace
+
+RigText rig_of_camera(const std::string& toml,
+                      const std::string& name,
+                      const std::filesystem::path& folder,
+                      const std::string& camera) {
+    std::vector<NamedCamera> cameras;
+    try {
+        cameras = cameras_in(toml::parse(toml), name);
+    } catch (const toml::parse_error&) {
+        return {toml, name, folder};  // throws, with a message
+    }
+    const auto chosen = std::ranges::find(cameras, camera, &NamedCamera::name);
+    if (chosen == cameras.end()) {
+        std::vector<std::string> names;
+        for (const NamedCamera& one : cameras) names.push_back(one.name);
+        throw InputError("{}: found no camera '{}'; allowed: {}",
+                         name,
+                         camera,
+                         names.empty() ? "none to choose, in a rig with one [camera]"
+                                       : fmt::format("{}", fmt::join(names, ", ")));
+    }
+    RigText text(alone(toml, cameras, *chosen), name, folder);
+    if (chosen == cameras.begin()) return text;
+    const Rig rig = RigText(alone(toml, cameras, cameras.front()), name, folder).rig();
+    if (!rig.objects.empty() || !rig.scene.empty())
+        throw InputError("{}: found {}; allowed: none for a camera that is not the first",
+                         name,
+                         rig.scene.empty() ? "objects" : "a scene");
+    const Mounting mounting = text.rig().mounting;
+    const Change change(rig.mounting, mounting);
+    naming(name, [&] {
+        for (const Strobe& strobe : rig.strobes) put_strobe(strobe, change, text);
+        const Sled sled = camera_pose(vehicle_pose(rig.sled, rig.mounting), mounting);
+        text.set("sled.altitude_m", sled.altitude_m);
+        text.set("sled.pitch_deg", sled.pitch_rad * kDegreesPerRadian);
+        text.set("sled.roll_deg", sled.roll_rad * kDegreesPerRadian);
+    });
+    static_cast<void>(text.rig());  // throws if it is no rig
+    return text;
+}
+
+RigText rig_of_camera(const std::filesystem::path& file, const std::string& camera) {
+    return rig_of_camera(read_text_file(file), file.string(), file.parent_path(), camera);
+}
+
+}  // namespace aphotic

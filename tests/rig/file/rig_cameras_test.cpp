@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rigs with two cameras, by what does not depend on who looks: heights over the floor, angles to
+// it, distances between lamps, and a beam's light on a place in the world.
+#include "rig/file/rig_cameras.h"
+
+#include "base/error.h"
+#include "rig/beam/beam.h"
+#include "rig/geometry.h"
+#include "rig/vehicle_pose.h"
+#include "support/dice.h"
+#include "support/has.h"
+#include "support/refusal.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace aphotic::rig_cameras_test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRounding = 1e-12;
+
+// A stereo pair; the second camera has a port of its own, and the place and angles of `second`.
+std::string two_cameras(const std::string& second) {
+    return R"(title = "stereo"
+[sled]
+altitude_m = 2.0
+pitch_deg = 4.0
+roll_deg = -3.0
+
+[[camera]]  # the first
+name = "port"
+resolution = [40, 30]
+pixel_pitch_um = 200.0
+focal_length_mm = 12.0
+response = "nikon-d5100"
+range_nm = [400, 700]
+position_m = [0.1, -0.2, 0.05]
+orientation_deg = [2, 1, 0]
+
+[[camera]]
+name = "starboard"
+resolution = [60, 50]
+pixel_pitch_um = 100.0
+focal_length_mm = 8.0
+response = "nikon-d5100"
+range_nm = [400, 700]
+)" + second +
+           R"(
+[camera.port]
+shape = "flat"
+distance_mm = 20.0
+thickness_mm = 10.0
+glass = "bk7"
+
+[water]
+absorption = "pope-fry-1997"
+
+[seafloor]
+reflectance = "sand"
+
+[beam.round]
+fwhm_deg = 70.0
+
+[beam.oval]
+diffuser_mm = [40.0, 90.0]
+focal_length_mm = 80.0
+distance_mm = 60.0
+aperture_mm = 80.0
+turn_deg = 20.0
+
+[[strobe]]
+name = "fore"
+position_m = [0.5, 0.1, 0.02]
+aim = { tilt_deg = 20.0, toward = "axis" }
+beam = "oval"
+spectrum = "xenon-flash"
+
+[[strobe]]
+name = "aft"
+position_m = [-0.5, 0.0, 0.0]
+direction = [0.3, 0.1, 1.0]
+beam = "round"
+spectrum = "xenon-flash"
+)";
+}
+
+Rig seen_by(const std::string& camera, const std::string& second) {
+    return rig_of_camera(two_cameras(second), "stereo.toml", {}, camera).rig();
+}
+
+double height_of(const Rig& rig, const Vector3d& point_m) {
+    const Plane floor = floor_plane(rig.sled);
+    return (point_m - floor.point_m).dot(floor.normal);
+}
+
+TEST(RigCameras, TheFirstHasTheRigAsItIs) {
+    const Rig rig = seen_by("port", "position_m = [0.1, 0.2, 0.05]");
+    EXPECT_EQ(rig.camera.width_px, 40);
+    EXPECT_FALSE(rig.camera.port);
+    EXPECT_EQ(rig.strobes[0].position_m, Vector3d(0.5, 0.1, 0.02));
+    EXPECT_EQ(rig.sled.altitude_m, 2.0);
+    EXPECT_TRUE(has(rig.toml, "[camera]\n"));
+    EXPECT_FALSE(has(rig.toml, "starboard"));
+}
+
+// Beside it, all lamps are as far to the other side.
+TEST(RigCameras, OneBesideItSeesTheLampsAsFarToTheOtherSide) {
+    const Rig rig =
+        seen_by("starboard", "position_m = [0.1, 0.2, 0.05]\norientation_deg = [2, 1, 0]");
+    EXPECT_EQ(rig.camera.width_px, 60);
+    EXPECT_TRUE(rig.camera.port);
+    const Vector3d shift_m =
+        turn_by({2.0 * kDegree, kDegree, 0.0}).transpose() * Vector3d(0, -0.4, 0);
+    EXPECT_LT((rig.strobes[0].position_m - Vector3d(0.5, 0.1, 0.02) - shift_m).norm(), kRounding);
+    EXPECT_LT((rig.strobes[1].axis - Vector3d(0.3, 0.1, 1.0).normalized()).norm(), kRounding);
+    EXPECT_NEAR(rig.strobes[0].beam.turn_rad, 20.0 * kDegree, kRounding);
+}
+
+TEST(RigCameras, WhoeverLooksTheLampsAreInOnePlaceInTheWorld) {
+    Dice dice(7);
+    for (int trial = 0; trial < 20; ++trial) {
+        const auto angle = [&] { return dice.between(-25.0, 25.0); };
+        const Rig one = seen_by("port", "");
+        const Rig other =
+            seen_by("starboard",
+                    fmt::format("position_m = [{}, {}, {}]\norientation_deg = [{}, {}, {}]",
+                                dice.between(-0.3, 0.3),
+                                dice.between(-0.3, 0.3),
+                                dice.between(-0.3, 0.3),
+                                angle(),
+                                angle(),
+                                8.0 * angle()));
+        for (std::size_t s = 0; s < 2; ++s) {
+            const Strobe& a = one.strobes[s];
+            const Strobe& b = other.strobes[s];
+            EXPECT_NEAR(height_of(one, a.position_m), height_of(other, b.position_m), kRounding);
+            EXPECT_NEAR(a.axis.dot(floor_plane(one.sled).normal),
+                        b.axis.dot(floor_plane(other.sled).normal),
+                        kRounding);
+            // Their light towards each other, which a wrong turn of the oval beam would change.
+            EXPECT_NEAR(intensity_towards(a.beam,
+                                          frame_about(a.axis),
+                                          one.strobes[1 - s].position_m - a.position_m +
+                                              Vector3d(floor_plane(one.sled).normal) * -1.5),
+                        intensity_towards(b.beam,
+                                          frame_about(b.axis),
+                                          other.strobes[1 - s].position_m - b.position_m +
+                                              Vector3d(floor_plane(other.sled).normal) * -1.5),
+                        1e-9);
+        }
+        EXPECT_NEAR((one.strobes[0].position_m - one.strobes[1].position_m).norm(),
+                    (other.strobes[0].position_m - other.strobes[1].position_m).norm(),
+                    kRounding);
+        EXPECT_NEAR(one.strobes[0].axis.dot(one.strobes[1].axis),
+                    other.strobes[0].axis.dot(other.strobes[1].axis),
+                    kRounding);
+    }
+}
+
+TEST(RigCameras, WhatCannotBeChosenIsRefused) {
+    const std::string text = two_cameras("position_m = [0, 0.2, 0]\norientation_deg = [0, 0, 90]");
+    const auto fault = [](const std::string& toml, const std::string& camera) {
+        return refusal_of([&] { return rig_of_camera(toml, "stereo.toml", {}, camera); });
+    };
+    EXPECT_EQ(fault(text, "left"), "stereo.toml: found no camera 'left'; allowed: port, starboard");
+    EXPECT_EQ(refusal_of([&] { return RigText(text, "stereo.toml", {}); }),
+              "stereo.toml:7: camera: found 2 cameras; allowed: one of them, by --camera port or "
+              "starboard");
+    const std::string lamp = "name = \"aft\"\nemitter_mm = [100, 200]\n";
+    std::string with_emitter = text;
+    with_emitter.replace(text.find("name = \"aft\"\n"), 13, lamp);
+    EXPECT_TRUE(has(fault(with_emitter, "starboard"), "strobe 'aft' has an emitter"));
+    std::string alike = text;
+    alike.replace(text.find("\"starboard\""), 11, "\"port\"");
+    EXPECT_TRUE(has(fault(alike, "port"), "each with a name of its own"));
+}
+
+}  // namespace
+}  // namespace aphotic::rig_cameras_test
