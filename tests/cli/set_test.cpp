@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // --set KEY=VALUE: the rig is what its file would be with that text.
+#include "support/exr_file.h"
 #include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_rig.h"
@@ -9,8 +10,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <regex>
 #include <string>
+#include <vector>
 
 namespace aphotic::set_test {
 namespace {
@@ -84,6 +88,47 @@ TEST_F(CommandSet, ScalesTheCamera) {
             << command;
 }
 
+// HabCam's lamps are symmetrical about its axis: cameras as far to port and to starboard see images
+// that are each other's mirror images.
+TEST_F(CommandSet, ChoosesACamera) {
+    constexpr std::size_t kWidth = 16;
+    const std::string text = text_of("rig.toml");
+    const std::size_t first = text.find("[camera]");
+    const std::size_t end = text.find("[water]");
+    const std::string keys = text.substr(first + 9, end - first - 9);
+    const auto camera = [&](const char* name, double y_m) {
+        return fmt::format(
+            "[[camera]]\nname = \"{}\"\nposition_m = [0, {}, 0]\n{}", name, y_m, keys);
+    };
+    write_file(path("sled.toml"),
+               text.substr(0, first) + camera("middle", 0.0) + camera("left", -0.2) +
+                   camera("right", 0.2) + text.substr(end));
+    for (const char* name : {"middle", "left", "right"})
+        done(fmt::format("lightmap sled.toml --camera {0} -o {0}.exr", name));
+    done("lightmap rig.toml -o rig.exr");
+    EXPECT_EQ(read_exr(path("middle.exr")), read_exr(path("rig.exr")));
+    const std::vector<float> left = read_exr(path("left.exr"));
+    const std::vector<float> right = read_exr(path("right.exr"));
+    constexpr double kMapError = 4e-5;  // of two maps, each to 1.2e-5, and the lamps' edges apart
+    double apart = 0.0;
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        const double mirrored = right[i / kWidth * kWidth + kWidth - 1 - i % kWidth];
+        edges += std::abs(left[i] / mirrored - 1.0) > kMapError ? 1U : 0U;
+        apart = std::max(apart, std::abs(left[i] / right[i] - 1.0));
+    }
+    EXPECT_EQ(edges, 0U);
+    EXPECT_GT(apart, 0.1) << "they see different light";
+    refused("lightmap sled.toml -o x.exr",
+            "allowed: one of them, by --camera middle or left or right");
+    refused("lightmap sled.toml --camera top -o x.exr",
+            "found no camera 'top'; allowed: middle, left, right");
+    refused("lightmap rig.toml --camera top -o x.exr",
+            "none to choose, in a rig with one [camera]");
+    EXPECT_EQ(json_by("plan sled.toml --camera left --json")["rig_settings"],
+              nlohmann::json({"camera=left"}));
+}
+
 TEST_F(CommandSet, RefusesWhatTheReaderRefuses) {
     write_file(path("beam.csv"), "angle_deg,intensity\n0,1\n90,0\n");
     fs::create_directory(path("raw"));
@@ -106,8 +151,10 @@ TEST_F(CommandSet, IsOfEveryCommandThatReadsARig) {
     for (const std::string& command :
          Arguments("render plan generate integrate trace lightmap design correct observe fit "
                    "baseline survey validate study beam"))
-        EXPECT_TRUE(has(aphotic(fmt::format("{} --help", command)).out, "\n  --set KEY=VALUE "))
-            << command;
+        for (const char* option : {"--set KEY=VALUE ", "--camera NAME "})
+            EXPECT_TRUE(
+                has(aphotic(fmt::format("{} --help", command)).out, fmt::format("\n  {}", option)))
+                << command;
     for (const char* command : {"compare", "data", "help"})
         EXPECT_FALSE(has(aphotic(fmt::format("{} --help", command)).out, "--set")) << command;
 }

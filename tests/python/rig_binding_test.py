@@ -21,6 +21,21 @@ def test_a_rig_is_what_its_file_says(rig_file):
     assert aphotic.Rig.parse(rig.text).digest == rig.digest
 
 
+def test_a_rig_with_two_cameras_is_read_as_one_of_them(rig_file, tmp_path):
+    text = rig_file.read_text()
+    first, end = text.index("[camera]"), text.index("[water]")
+    keys = text[first:end].removeprefix("[camera]")
+    cameras = "".join(
+        f'[[camera]]\nname = "{name}"\nposition_m = [0, {y}, 0]{keys}' for name, y in (("port", -0.1), ("starboard", 0.1))
+    )
+    stereo = tmp_path / "stereo.toml"
+    stereo.write_text(text[:first] + cameras + text[end:])
+    assert "position_m = [0.5, 0.0, 0.0]" in aphotic.Rig.load(stereo, camera="port").text
+    assert "position_m = [0.5, -0.2, 0.0]" in aphotic.Rig.load(stereo, camera="starboard").text
+    with pytest.raises(aphotic.InputError, match="allowed: one of them, by --camera port or starboard"):
+        aphotic.Rig.load(stereo)
+
+
 def test_replace_sets_keys_and_leaves_the_rig_alone(rig_file):
     rig = aphotic.Rig.load(rig_file)
     strobe = f"strobe.{rig.strobes[0]}"
