@@ -154,8 +154,4 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     }
 }
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 }  // namespace aphotic

@@ -99,9 +99,6 @@ inline constexpr double kLeastDistance_m = 0.001;
 // all of its lamps are above it, since an emitter may extend below.
 void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
 
-// [rad], for directions of any length.
-[[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
 [[nodiscard]] inline Eigen::Vector3d to_povray(const Eigen::Vector3d& sled) {
     return {sled.y(), sled.x(), sled.z()};
 }

@@ -300,6 +300,10 @@ Beam scaled_to_flux(Beam beam) {
     return beam;
 }
 
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 BeamFrame frame_about(const Vector3d& axis) {
     const bool is_fore_and_aft = axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
     const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();

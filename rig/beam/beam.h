@@ -82,6 +82,8 @@ struct BeamFrame {
     Eigen::Vector3d across;
 };
 [[nodiscard]] BeamFrame frame_about(const Eigen::Vector3d& axis);
+// [rad], for directions of any length.
+[[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 inline constexpr double kForeAndAftSine = 1e-6;
 
 // Directions `towards` are in the sled's frame, of any length.

@@ -595,6 +595,26 @@ TEST_F(CorrectCommand, WhatStaysInPlaceIsTheLights) {
     EXPECT_TRUE(has(done(correct({})).out, "1 image corrected"));
 }
 
+// Of a dive of 400 images, those that it repeats, a twentieth is searched: more than are examined
+// anyway.
+TEST_F(CorrectCommand, ALargeSurveyIsSearchedForAPatternInATwentieth) {
+    take_dive();
+    std::istringstream all(lines_);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(all, line);) lines.push_back(line);
+    std::string navigation;
+    for (int i = 0; i < 400; ++i) {
+        const std::string& line = lines[static_cast<std::size_t>(i) % lines.size()];
+        const std::string name = fmt::format("d{:03}.tif", i);
+        fs::create_hard_link(path("raw/" + line.substr(0, 6)), path("raw/" + name));
+        navigation += name + line.substr(6) + "\n";
+    }
+    for (const std::string& line : lines) fs::remove(path("raw/" + line.substr(0, 6)));
+    write_file(path("nav.eic"), navigation);
+    done(correct({}));
+    EXPECT_EQ(json_in("out/correction.json")["pattern"]["images"], 20);
+}
+
 // What each option makes of poses is NavigationFile's concern: here each reaches it, and is noted.
 // Other poses are another survey: the gain is taken anew, and every image done.
 TEST_F(CorrectCommand, OptionsOfNavigationReachItsReader) {
