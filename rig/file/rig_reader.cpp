@@ -768,10 +768,10 @@ void require_one_camera(Section& top) {
 }
 
 Rig read_all(Section top, RigFiles files, std::string toml) {
-    require_one_camera(top);
     std::string title = top.text_or("title", "a string in quotes", "");
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
+    require_one_camera(top);
     Camera camera = read_camera(top.section("camera", "a table [camera]"), files, mounting);
     Water water = read_water(top.section("water", "a table [water]"), files);
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"), files);

@@ -92,7 +92,8 @@ TEST_F(CommandSet, ScalesTheCamera) {
 // that are each other's mirror images.
 TEST_F(CommandSet, ChoosesACamera) {
     constexpr std::size_t kWidth = 16;
-    const std::string text = text_of("rig.toml");
+    const std::string text = with(text_of("rig.toml"), {{"pixel_pitch_um", "500.0"}});
+    write_file(path("rig.toml"), text);
     const std::size_t first = text.find("[camera]");
     const std::size_t end = text.find("[water]");
     const std::string keys = text.substr(first + 9, end - first - 9);
