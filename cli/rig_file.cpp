@@ -80,15 +80,21 @@ RigText read_rig_text_as_set(const std::string& file) {
     const std::filesystem::path place(file);
     const auto camera = chosen_camera();
     RigText text = camera ? rig_of_camera(place, *camera) : RigText(place);
+    std::vector<RigSetting> settings;
+    std::string said;
+    for (const std::string& setting : set_keys) {
+        if (setting.starts_with(kCamera)) continue;
+        const std::size_t sign = setting.find('=');
+        settings.push_back({setting.substr(0, sign), setting.substr(sign + 1)});
+        said += fmt::format("{}--set {}", said.empty() ? "" : " ", setting);
+    }
+    if (settings.empty()) return text;
     try {
-        for (const std::string& setting : set_keys) {
-            if (setting.starts_with(kCamera)) continue;
-            const std::size_t sign = setting.find('=');
-            text.set_toml(setting.substr(0, sign), setting.substr(sign + 1));
-        }
-        if (!set_keys.empty()) static_cast<void>(text.rig());
+        if (camera) return rig_of_camera(place, *camera, settings);
+        for (const RigSetting& one : settings) text.set_toml(one.key, one.value);
+        static_cast<void>(text.rig());
     } catch (const InputError& error) {
-        throw InputError("--set {}: {}", fmt::join(set_keys, " --set "), error.what());
+        throw InputError("{}: {}", said, error.what());
     }
     return text;
 }

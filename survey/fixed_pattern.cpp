@@ -23,28 +23,57 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 
 using Residual = std::vector<float>;
 
-// use(one, other, d) for neighbouring places that are both seen.
-template <typename Use>
-void for_pairs(const Residual& residual, std::size_t across, const Use& use) {
-    const auto pair = [&](std::size_t one, std::size_t other) {
-        const double d = static_cast<double>(residual[other]) - static_cast<double>(residual[one]);
-        if (std::isfinite(d)) use(static_cast<Index>(one), static_cast<Index>(other), d);
-    };
-    for (std::size_t place = 0; place < residual.size(); ++place) {
-        if (place % across + 1 < across) pair(place, place + 1);
-        if (place + across < residual.size()) pair(place, place + across);
+// Neighbouring places.
+struct PlacePair {
+    std::size_t one = 0;
+    std::size_t other = 0;
+
+    // NaN where one is unseen.
+    [[nodiscard]] double difference(const Residual& residual) const {
+        return static_cast<double>(residual[other]) - static_cast<double>(residual[one]);
     }
+};
+
+std::vector<PlacePair> pairs_of(std::size_t places, std::size_t across) {
+    std::vector<PlacePair> pairs;
+    for (std::size_t place = 0; place < places; ++place) {
+        if (place % across + 1 < across) pairs.push_back({place, place + 1});
+        if (place + across < places) pairs.push_back({place, place + across});
+    }
+    return pairs;
 }
 
-double spread_of(std::span<const Residual> residuals, std::size_t across) {
+double spread_of(std::span<const Residual> residuals, const std::vector<PlacePair>& pairs) {
     std::vector<double> sizes;
-    for (const Residual& residual : residuals)
-        for_pairs(residual, across, [&](Index, Index, double d) { sizes.push_back(std::abs(d)); });
+    for (const PlacePair& pair : pairs) {
+        for (const Residual& residual : residuals) {
+            const double d = pair.difference(residual);
+            if (std::isfinite(d)) sizes.push_back(std::abs(d));
+        }
+    }
     constexpr double kLeast = 1e-9;  // of images without any texture
     return sizes.empty() ? kLeast : std::max(kLeast, upper_median(sizes) / kMedianOfT2);
 }
 
-// The first column has each image as it is.
+// D, and the sum of w about it.
+struct Centre {
+    double difference = 0.0;
+    double weight = 0.0;
+};
+
+Centre centre_of(const VectorXd& differences, double spread) {
+    constexpr int kRounds = 5;
+    Centre centre;
+    for (int round = 0; round < kRounds; ++round) {
+        const auto off = (differences.array() - centre.difference) / spread;
+        const Eigen::ArrayXd weights = 3.0 / (2.0 + off.square());
+        centre.weight = weights.sum();
+        centre.difference = (weights * differences.array()).sum() / centre.weight;
+    }
+    return centre;
+}
+
+// A sign of each image, by draw; the first draw has the images as they are.
 MatrixXd random_signs(std::size_t images) {
     MatrixXd signs(static_cast<Index>(images), 1 + kDraws);
     std::mt19937 random;
@@ -53,7 +82,8 @@ MatrixXd random_signs(std::size_t images) {
     return signs;
 }
 
-// The field's normal equations: a matrix, and a right-hand side for each image alone.
+// The fields' normal equations, with a right-hand side for each draw. All have the weights of the
+// images as they are.
 struct Equations {
     Eigen::SparseMatrix<double> normal;
     MatrixXd wanted;
@@ -63,25 +93,40 @@ struct Equations {
 Equations equations_of(std::span<const Residual> residuals, std::size_t across) {
     const std::size_t places = residuals.front().size();
     const auto size = static_cast<Index>(places);
-    const double spread = spread_of(residuals, across);
+    const std::vector<PlacePair> pairs = pairs_of(places, across);
+    const double spread = spread_of(residuals, pairs);
+    const MatrixXd signs = random_signs(residuals.size());
     Equations all{.normal{size, size},
-                  .wanted = MatrixXd::Zero(size, std::ssize(residuals)),
+                  .wanted = MatrixXd::Zero(size, signs.cols()),
                   .is_seen = std::vector<bool>(places)};
     Triplets entries;
     constexpr double kTie = 1e-6;  // selects one of all fields that differ by a constant
     for (Index k = 0; k < size; ++k) entries.emplace_back(k, k, kTie);
-    for (Index i = 0; i < std::ssize(residuals); ++i) {
-        const Residual& residual = residuals[static_cast<std::size_t>(i)];
-        for_pairs(residual, across, [&](Index one, Index other, double d) {
-            const double w = 3.0 / (2.0 + d * d / (spread * spread));
-            for (const auto& [row, sign] : {std::pair(one, -1.0), std::pair(other, 1.0)}) {
-                entries.emplace_back(row, row, w);
-                all.wanted(row, i) += sign * w * d;
-                all.is_seen[static_cast<std::size_t>(row)] = true;
-            }
-            entries.emplace_back(one, other, -w);
-            entries.emplace_back(other, one, -w);
-        });
+    for (const PlacePair& pair : pairs) {
+        std::vector<Index> seen;
+        std::vector<double> differences;
+        for (std::size_t i = 0; i < residuals.size(); ++i) {
+            const double d = pair.difference(residuals[i]);
+            if (!std::isfinite(d)) continue;
+            seen.push_back(static_cast<Index>(i));
+            differences.push_back(d);
+        }
+        if (seen.empty()) continue;
+        const VectorXd d = VectorXd::Map(differences.data(), std::ssize(differences));
+        const double weight = centre_of(d, spread).weight;
+        const auto one = static_cast<Index>(pair.one);
+        const auto other = static_cast<Index>(pair.other);
+        for (Index draw = 0; draw < signs.cols(); ++draw) {
+            const VectorXd drawn = d.cwiseProduct(signs.col(draw)(seen));
+            const double pull = weight * centre_of(drawn, spread).difference;
+            all.wanted(one, draw) -= pull;
+            all.wanted(other, draw) += pull;
+        }
+        entries.emplace_back(one, one, weight);
+        entries.emplace_back(other, other, weight);
+        entries.emplace_back(one, other, -weight);
+        entries.emplace_back(other, one, -weight);
+        all.is_seen[pair.one] = all.is_seen[pair.other] = true;
     }
     all.normal.setFromTriplets(entries.begin(), entries.end());
     return all;
@@ -116,7 +161,7 @@ FixedPattern fixed_pattern(std::span<const std::vector<float>> residuals, std::s
     if (residuals.empty()) return pattern;
     const Equations equations = equations_of(residuals, across);
     const MatrixXd fields = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(equations.normal)
-                                .solve(equations.wanted * random_signs(residuals.size()));
+                                .solve(equations.wanted);
     const auto seen = static_cast<double>(std::ranges::count(equations.is_seen, true));
     if (seen == 0.0) return pattern;
     // Unseen places are 0 in every field.

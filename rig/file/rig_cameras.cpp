@@ -40,7 +40,6 @@ std::size_t last_line(const toml::node& node) {
 
 struct NamedCamera {
     std::string name;
-    std::size_t name_line = 0;
     Lines lines;
 };
 
@@ -57,9 +56,7 @@ std::vector<NamedCamera> cameras_in(const toml::table& root, const std::string& 
                 "{}:{}: camera: allowed: tables [[camera]], each with a name of its own",
                 file,
                 node.source().begin.line);
-        cameras.push_back({.name = *name,
-                           .name_line = table->get("name")->source().begin.line,
-                           .lines = {node.source().begin.line, last_line(node)}});
+        cameras.push_back({.name = *name, .lines = {node.source().begin.line, last_line(node)}});
     }
     return cameras;
 }
@@ -76,15 +73,25 @@ std::string alone(const std::string& toml,
         const bool is_left_out = std::ranges::any_of(cameras, [&](const NamedCamera& one) {
             return &one != &chosen && number >= one.lines.first && number <= one.lines.last;
         });
-        if (is_left_out || number == chosen.name_line) line.clear();
-        if (number == chosen.lines.first) line = "[camera]";
+        if (is_left_out) line.clear();
+        if (number == chosen.lines.first)
+            line = "[camera]  # one of several; strobes and [sled] are relative to it";
         text += line + "\n";
     }
     return text;
 }
 
+// camera.KEY is the chosen camera's.
+void apply(std::span<const RigSetting> settings, bool is_chosen, RigText& text) {
+    for (const RigSetting& one : settings)
+        if (is_chosen || !one.key.starts_with("camera.")) text.set_toml(one.key, one.value);
+}
+
+// To a thousandth of a nanometre, for readers.
 std::vector<double> numbers_of(const Vector3d& vector) {
-    return {vector.begin(), vector.end()};
+    constexpr double kSteps = 1e12;
+    const Vector3d rounded = (kSteps * vector).array().round() / kSteps;
+    return {rounded.begin(), rounded.end()};
 }
 
 // From the first camera's frame to the chosen one's.
@@ -131,26 +138,37 @@ void put_strobe(const Strobe& strobe, const Change& change, RigText& text) {
 RigText rig_of_camera(const std::string& toml,
                       const std::string& name,
                       const std::filesystem::path& folder,
-                      const std::string& camera) {
+                      const std::string& camera,
+                      std::span<const RigSetting> settings) {
     std::vector<NamedCamera> cameras;
     try {
         cameras = cameras_in(toml::parse(toml), name);
     } catch (const toml::parse_error&) {
         return {toml, name, folder};  // throws, with a message
     }
+    const auto read = [&](const NamedCamera& one, bool is_chosen) {
+        RigText text(alone(toml, cameras, one), name, folder);
+        apply(settings, is_chosen, text);
+        return text;
+    };
+    if (cameras.empty()) {
+        RigText text(toml, name, folder);
+        if (text.word("camera.name") != camera)
+            throw InputError(
+                "{}: found one camera, not called '{}'; allowed: no --camera", name, camera);
+        apply(settings, true, text);
+        return text;
+    }
     const auto chosen = std::ranges::find(cameras, camera, &NamedCamera::name);
     if (chosen == cameras.end()) {
         std::vector<std::string> names;
         for (const NamedCamera& one : cameras) names.push_back(one.name);
-        throw InputError("{}: found no camera '{}'; allowed: {}",
-                         name,
-                         camera,
-                         names.empty() ? "none to choose, in a rig with one [camera]"
-                                       : fmt::format("{}", fmt::join(names, ", ")));
+        throw InputError(
+            "{}: found no camera '{}'; allowed: {}", name, camera, fmt::join(names, ", "));
     }
-    RigText text(alone(toml, cameras, *chosen), name, folder);
+    RigText text = read(*chosen, true);
     if (chosen == cameras.begin()) return text;
-    const Rig rig = RigText(alone(toml, cameras, cameras.front()), name, folder).rig();
+    const Rig rig = read(cameras.front(), false).rig();
     if (!rig.objects.empty() || !rig.scene.empty())
         throw InputError("{}: found {}; allowed: none for a camera that is not the first",
                          name,
@@ -168,8 +186,10 @@ RigText rig_of_camera(const std::string& toml,
     return text;
 }
 
-RigText rig_of_camera(const std::filesystem::path& file, const std::string& camera) {
-    return rig_of_camera(read_text_file(file), file.string(), file.parent_path(), camera);
+RigText rig_of_camera(const std::filesystem::path& file,
+                      const std::string& camera,
+                      std::span<const RigSetting> settings) {
+    return rig_of_camera(read_text_file(file), file.string(), file.parent_path(), camera, settings);
 }
 
 }  // namespace aphotic

@@ -23,16 +23,27 @@
 #include "rig/file/rig_text.h"
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace aphotic {
 
-// An InputError if there is no such camera. A rig with one [camera] has none to choose.
-[[nodiscard]] RigText rig_of_camera(const std::filesystem::path& file, const std::string& camera);
+// A key, and its value as in TOML.
+struct RigSetting {
+    std::string key;
+    std::string value;
+};
+
+// Keys are set as in the file, before the lamps are seen by the chosen camera; camera.KEY is that
+// camera's. An InputError if there is no such camera. A single [camera] can have a name, too.
+[[nodiscard]] RigText rig_of_camera(const std::filesystem::path& file,
+                                    const std::string& camera,
+                                    std::span<const RigSetting> settings = {});
 // The same of a text, with files relative to the folder.
 [[nodiscard]] RigText rig_of_camera(const std::string& toml,
                                     const std::string& name,
                                     const std::filesystem::path& folder,
-                                    const std::string& camera);
+                                    const std::string& camera,
+                                    std::span<const RigSetting> settings = {});
 
 }  // namespace aphotic

@@ -351,7 +351,8 @@ void scale_down(double scale, Camera& camera) {
 
 Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
     section.refuse_keys_but(
-        "resolution, pixel_pitch_um, focal_length_mm, fov_deg, calibration, vignetting, range_nm, "
+        "name, resolution, pixel_pitch_um, focal_length_mm, fov_deg, calibration, vignetting, "
+        "range_nm, "
         "response, port, black_level_dn, white_level_dn, bayer, exposure_ms, iso, f_number, "
         "gain_dn_per_e, read_noise_e, saturation_e, position_m, orientation_deg, scale");
     const std::optional<CameraCalibration> calibration = read_calibration(section, files);
@@ -380,6 +381,7 @@ Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
         camera.port = read_port(section.section("port", "a table"));
     }
     read_place(section, mounting);
+    (void)section.text_or("name", "a string in quotes", "");  // chooses it (rig_cameras.h)
     if (section.has("scale")) scale_down(section.number("scale", kScale), camera);
     return camera;
 }

@@ -125,7 +125,7 @@ TEST_F(CommandSet, ChoosesACamera) {
     refused("lightmap sled.toml --camera top -o x.exr",
             "found no camera 'top'; allowed: middle, left, right");
     refused("lightmap rig.toml --camera top -o x.exr",
-            "none to choose, in a rig with one [camera]");
+            "found one camera, not called 'top'; allowed: no --camera");
     EXPECT_EQ(json_by("plan sled.toml --camera left --json")["rig_settings"],
               nlohmann::json({"camera=left"}));
 }

@@ -17,6 +17,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace aphotic::rig_cameras_test {
 namespace {
@@ -105,7 +106,7 @@ TEST(RigCameras, TheFirstHasTheRigAsItIs) {
     EXPECT_FALSE(rig.camera.port);
     EXPECT_EQ(rig.strobes[0].position_m, Vector3d(0.5, 0.1, 0.02));
     EXPECT_EQ(rig.sled.altitude_m, 2.0);
-    EXPECT_TRUE(has(rig.toml, "[camera]\n"));
+    EXPECT_TRUE(has(rig.toml, "[camera]  # one of several"));
     EXPECT_FALSE(has(rig.toml, "starboard"));
 }
 
@@ -161,6 +162,30 @@ TEST(RigCameras, WhoeverLooksTheLampsAreInOnePlaceInTheWorld) {
                     other.strobes[0].axis.dot(other.strobes[1].axis),
                     kRounding);
     }
+}
+
+// A key is set in the frame of the file, whoever looks: as if the file had said so.
+TEST(RigCameras, SettingsAreThoseOfTheFile) {
+    const std::string mounted = "position_m = [0.1, 0.2, 0.05]\norientation_deg = [2, 1, 30]";
+    std::string edited = two_cameras(mounted);
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        edited.replace(edited.find(from), from.size(), to);
+    };
+    replace("position_m = [0.5, 0.1, 0.02]", "position_m = [0.4, 0.3, 0.0]");
+    replace("tilt_deg = 20.0", "tilt_deg = 12.0");
+    replace("focal_length_mm = 8.0", "focal_length_mm = 9.0");
+    const std::vector<RigSetting> settings{{"strobe.fore.position_m", "[0.4, 0.3, 0.0]"},
+                                           {"strobe.fore.aim.tilt_deg", "12.0"},
+                                           {"camera.focal_length_mm", "9.0"}};
+    const Rig set =
+        rig_of_camera(two_cameras(mounted), "stereo.toml", {}, "starboard", settings).rig();
+    const Rig wanted = rig_of_camera(edited, "stereo.toml", {}, "starboard").rig();
+    EXPECT_EQ(set.strobes[0].position_m, wanted.strobes[0].position_m);
+    EXPECT_EQ(set.strobes[0].axis, wanted.strobes[0].axis);
+    EXPECT_EQ(set.camera.focal_length_m, wanted.camera.focal_length_m);
+    EXPECT_EQ(set.toml, wanted.toml);
+    // And the result is a rig of the one camera, which keeps its name.
+    EXPECT_EQ(rig_of_camera(set.toml, "starboard.toml", {}, "starboard").rig().digest, set.digest);
 }
 
 TEST(RigCameras, WhatCannotBeChosenIsRefused) {
