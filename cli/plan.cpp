@@ -220,12 +220,14 @@ void print_wavelengths(const Manifest& manifest) {
 
 void print_port(const PlannedRender& planned) {
     const PortCost cost = port_cost(planned);
-    say("\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner. {} instead "
-        "of\n{} keep those of one frame within {:.3g} of each other.\n",
-        cost.spread_px,
-        counted(planned.plan.frames(), "frame"),
-        cost.frames_without,
-        planned.plan.scene.pixel_shift);
+    say("\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner.",
+        cost.spread_px);
+    if (planned.plan.frames() > cost.frames_without)
+        say(" {} instead of\n{} keep those of one frame within {:.3g} pixels of each other.",
+            counted(planned.plan.frames(), "frame"),
+            cost.frames_without,
+            planned.plan.scene.pixel_shift);
+    say("\n");
 }
 
 void print(const Planned& made) {
