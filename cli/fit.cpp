@@ -158,6 +158,8 @@ void print_result(const std::string& title,
     say("{}: {}\n", title, words_of(result));
     for (const FittedNumber& one : result.numbers)
         if (!is_curve(one)) say("  {:<36} {}\n", one.key, with_error(one));
+    if (std::ranges::count(result.numbers, "power", &FittedNumber::word) > 0)
+        say("powers keep the rig's sum: images do not determine it\n");
     for (const FittedNumber& one : result.numbers)
         if (!one.is_determined) say("{}\n", words_of(one));
     if (!result.fixed.empty())
