@@ -138,13 +138,10 @@ std::string words_of(const FixedPattern& pattern) {
     if (pattern.logarithm.empty()) return "";
     const std::string images = counted(pattern.images, "image");
     const double by_chance = 100.0 * pattern.by_chance;
-    if (!pattern.exceeds_chance())
-        return fmt::format("no fixed pattern over {} beyond the {:.2g} % that floors alone leave",
-                           images,
-                           by_chance);
-    return fmt::format("a fixed pattern of {:.2g} % over {}, where floors alone leave {:.2g} %",
+    return fmt::format("a fixed pattern of {:.2g} % over {}, {} floors alone leave {:.2g} %",
                        100.0 * pattern.rms,
                        images,
+                       pattern.exceeds_chance() ? "where" : "no more than chance:",
                        by_chance);
 }
 

@@ -87,9 +87,11 @@ RigTemplate rig_template(std::string_view name) {
 }
 
 std::vector<UnmeasuredLine> unmeasured_lines(std::string_view rig) {
-    if (!rig.starts_with(kHeading)) return {};
-    const std::string_view name =
-        rig.substr(kHeading.size(), rig.find('`', kHeading.size()) - kHeading.size());
+    // A fitted rig has a line of its own before it.
+    const std::size_t heading = rig.find(kHeading);
+    if (heading == std::string_view::npos) return {};
+    const std::size_t at = heading + kHeading.size();
+    const std::string_view name = rig.substr(at, rig.find('`', at) - at);
     if (std::ranges::find(templates(), name, &Template::name) == templates().end()) return {};
     const std::set<std::string> guesses = marked_values(file_named(template_named(name).rig).csv);
     std::vector<UnmeasuredLine> unmeasured;

@@ -113,8 +113,9 @@ TEST(FixedPattern, InWords) {
     EXPECT_EQ(words_of(pattern), "");
     pattern.logarithm = {0.0F};
     pattern.rms = 0.019;
-    EXPECT_EQ(words_of(pattern),
-              "no fixed pattern over 16 images beyond the 1.2 % that floors alone leave");
+    EXPECT_EQ(
+        words_of(pattern),
+        "a fixed pattern of 1.9 % over 16 images, no more than chance: floors alone leave 1.2 %");
     pattern.rms = 0.084;
     EXPECT_EQ(words_of(pattern),
               "a fixed pattern of 8.4 % over 16 images, where floors alone leave 1.2 %");

@@ -62,6 +62,12 @@ TEST(RigTemplate, NorIsOneWithoutItsMark) {
     EXPECT_EQ(unmeasured_lines(replaced(rig, mark, "")).size() + 1, unmeasured_lines(rig).size());
 }
 
+// A fit does not measure the camera's response.
+TEST(RigTemplate, AFittedRigHasTheGuessesThatAreLeft) {
+    const std::string rig = rig_template("led").rig;
+    EXPECT_EQ(unmeasured_lines("# By aphotic fit\n" + rig).size(), unmeasured_lines(rig).size());
+}
+
 TEST(RigTemplate, OtherRigsHaveNoGuesses) {
     EXPECT_TRUE(unmeasured_lines(scene_text("habcam.toml")).empty());
     EXPECT_TRUE(unmeasured_lines("# From `aphotic init --like nothing`\n").empty());
