@@ -33,9 +33,9 @@
 
 #include "base/lanes.h"
 #include "light/beam_light.h"
+#include "light/dispersion.h"
 #include "light/floor_arrival.h"
 #include "light/floor_ray.h"
-#include "light/dispersion.h"
 #include "light/lane_ray.h"
 #include "light/ray_table.h"
 #include "light/signal_table.h"

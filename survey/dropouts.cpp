@@ -21,9 +21,9 @@ namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMedianOfT4 = 0.7407;  // of the absolute value
-constexpr double kPeakOfT4 = 0.375;   // density at 0
-constexpr double kLeastScale = 0.02;  // poses and maps are no better than this
-constexpr double kFewDetail = 0.1;    // the least for few images
+constexpr double kPeakOfT4 = 0.375;     // density at 0
+constexpr double kLeastScale = 0.02;    // poses and maps are no better than this
+constexpr double kFewDetail = 0.1;      // the least for few images
 
 // Means over cells of samples that arrive row by row.
 class CellMeans {

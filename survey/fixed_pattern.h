@@ -12,7 +12,8 @@
 // The pattern is the field f of mean 0 whose differences are closest to D, weighted by sum w. By
 // chance, floors leave a pattern too. It is estimated from the same images, each with the sign of
 // its d drawn at random, kDraws times, and a D of each draw: what they have in common cancels, and
-// texture stays as rough and as correlated as it is. A pattern exceeds chance if it is larger than that of every draw.
+// texture stays as rough and as correlated as it is. A pattern exceeds chance if it is larger than
+// that of every draw.
 //
 // Limits: it shows neither the overall level nor an error that varies with the pose. Less than
 // about ten images have too few signs to exceed chance.

@@ -13,8 +13,8 @@
 #pragma once
 
 #include "rig/rig.h"
-#include "survey/images/image_files.h"
 #include "rig/vehicle_pose.h"
+#include "survey/images/image_files.h"
 
 #include <nlohmann/json_fwd.hpp>
 

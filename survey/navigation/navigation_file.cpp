@@ -10,10 +10,10 @@
 #include "base/printable.h"
 #include "base/words.h"
 #include "image/any_image.h"
+#include "rig/vehicle_pose.h"
 #include "survey/navigation/image_time.h"
 #include "survey/navigation/navigation_csv.h"
 #include "survey/navigation/navigation_ifdo.h"
-#include "rig/vehicle_pose.h"
 
 #include <fmt/format.h>
 

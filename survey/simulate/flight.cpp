@@ -3,8 +3,8 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
-#include "survey/navigation/time_text.h"
 #include "rig/vehicle_pose.h"
+#include "survey/navigation/time_text.h"
 #include "survey/simulate/random_draw.h"
 
 #include <fmt/format.h>
