@@ -6,7 +6,7 @@
 // --set KEY=VALUE sets keys of its text (rig/file/rig_text.h) before it is read, for every command:
 // from then on this is the rig, and its digest is that of the changed text. --scale 0.1, of the
 // commands that make images of a rig, is --set camera.scale=0.1. --camera NAME chooses one of
-// several (rig/file/rig_cameras.h), before keys are set.
+// several (rig/file/rig_cameras.h); keys are set as the file has them.
 #pragma once
 
 #include "rig/file/rig_text.h"
