@@ -43,6 +43,26 @@ struct NamedCamera {
     Lines lines;
 };
 
+// Other tables between those of a camera, such as before its [camera.port], would be left out with
+// it.
+void require_apart(const toml::node& node,
+                   const std::vector<NamedCamera>& cameras,
+                   const std::string& file) {
+    const std::size_t line = node.source().begin.line;
+    const bool is_within = std::ranges::any_of(cameras, [&](const NamedCamera& one) {
+        return line >= one.lines.first && line <= one.lines.last;
+    });
+    if (is_within)
+        throw InputError(
+            "{}:{}: found between the tables of a camera; allowed: before or after them",
+            file,
+            line);
+    if (const toml::table* table = node.as_table(); table != nullptr)
+        for (auto&& [key, value] : *table) require_apart(value, cameras, file);
+    if (const toml::array* array = node.as_array(); array != nullptr)
+        for (const toml::node& value : *array) require_apart(value, cameras, file);
+}
+
 std::vector<NamedCamera> cameras_in(const toml::table& root, const std::string& file) {
     const toml::array* array = root["camera"].as_array();
     std::vector<NamedCamera> cameras;
@@ -58,6 +78,8 @@ std::vector<NamedCamera> cameras_in(const toml::table& root, const std::string& 
                 node.source().begin.line);
         cameras.push_back({.name = *name, .lines = {node.source().begin.line, last_line(node)}});
     }
+    for (auto&& [key, value] : root)
+        if (key != "camera") require_apart(value, cameras, file);
     return cameras;
 }
 

@@ -204,6 +204,14 @@ TEST(RigCameras, WhatCannotBeChosenIsRefused) {
     std::string alike = text;
     alike.replace(text.find("\"starboard\""), 11, "\"port\"");
     EXPECT_TRUE(has(fault(alike, "port"), "each with a name of its own"));
+    // The port of the second camera behind the water: without that camera, no water would be left.
+    const std::string port =
+        "[camera.port]\nshape = \"flat\"\ndistance_mm = 20.0\nthickness_mm = "
+        "10.0\nglass = \"bk7\"\n";
+    std::string scattered = text;
+    scattered.erase(scattered.find(port), port.size());
+    scattered.insert(scattered.find("[seafloor]"), port);
+    EXPECT_TRUE(has(fault(scattered, "port"), "found between the tables of a camera"));
 }
 
 }  // namespace
