@@ -68,6 +68,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
     for (const auto& [command, why] : Cases{
              {observe + "2 --trim 0.5", "--trim: found 0.5; allowed: 0 to 0.49"},
              {observe + "-1", "--altitude: found -1; allowed: more than 0"},
+             {correct + "--altitude 3", "--altitude: found 1 value; allowed: LEAST,MOST"},
              {observe + "2 --within inf", "--within: found inf; allowed: 0 or more"},
              {observe + "2 --longest-gap-s 0", "--longest-gap-s: found 0; allowed: more than 0"},
              {observe + "2 --clock-offset-s x", "--clock-offset-s"},

@@ -59,6 +59,12 @@ TEST(FitCheck, NumbersThatAreFarFromTheRigs) {
     EXPECT_EQ(fitted.signs(), "range\n");
 }
 
+TEST(FittedNumber, HasTheDigitsThatItsErrorEarns) {
+    EXPECT_EQ(with_error({.value = 4.0624, .error = 0.1329}), "4.06 +- 0.13");
+    EXPECT_EQ(with_error({.value = 12355.4, .error = 271.0}), "12355 +- 271");
+    EXPECT_EQ(with_error({.value = 0.0, .error = 0.0094}), "0.0000 +- 0.0094");
+}
+
 TEST(FitCheck, SaturatedSamples) {
     Fitted fitted;
     // Of all images: half of them twice as much.

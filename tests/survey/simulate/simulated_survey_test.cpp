@@ -177,6 +177,9 @@ TEST_F(Simulated, IsOneSurveyInItsFolder) {
     other.seed = 2;
     EXPECT_TRUE(has(refused(other), "another folder"));
     other = made;
+    other.rig.digest = "another";
+    EXPECT_TRUE(has(refused(other), "survey.json: found a survey of another rig; allowed: "));
+    other = made;
     other.camera.read_noise_e = 9.0;
     EXPECT_NE(refused(other), "");
     other = made;
