@@ -67,7 +67,8 @@ void print_report(const CorrectionReport& report,
                   const std::filesystem::path& folder,
                   bool has_page) {
     const RunOutcome& run = *report.run;
-    say("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
+    say("{}: {} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
+        folder.string(),
         counted(run.corrected, "image"),
         report.seconds,
         run.kept,
@@ -125,7 +126,7 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
     if (options.no_veil || !rig.water.scatters()) return std::nullopt;
     if (survey.navigation)
         rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
-    return model_error(rig, options.input.rig, options.model_tolerance);
+    return model_error(rig, options.input.rig, options.model_tolerance, "--altitude");
 }
 
 void expect_size_of(const LightAt& light, CameraNumbers& camera) {

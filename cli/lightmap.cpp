@@ -201,7 +201,7 @@ void print(const MadeLightmap& made) {
 
 std::optional<ManifestModel> model_of(const LightmapCommandOptions& options, const Rig& rig) {
     if (!options.map.has_veil) return std::nullopt;
-    return model_error(rig, options.rig_file, options.model_tolerance);
+    return model_error(rig, options.rig_file, options.model_tolerance, "--altitude");
 }
 
 void require_room_for_maps(const LightmapCommandOptions& options,

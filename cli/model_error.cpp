@@ -19,7 +19,8 @@ void add_model_tolerance(CLI::App& app, double& tolerance) {
 
 std::optional<ManifestModel> model_error(const Rig& rig,
                                          const std::string& rig_file,
-                                         double tolerance) {
+                                         double tolerance,
+                                         std::string_view altitude_by) {
     if (!rig.water.scatters()) return std::nullopt;
     ProgressLine line;
     const ModelCheck check = check_model(rig, kModelPaths, all_cores(), [&](double share) {
@@ -31,12 +32,13 @@ std::optional<ManifestModel> model_error(const Rig& rig,
         throw InputError(
             "{}: found an estimated {:.2g} of {}'s signal (rms, at {} m) in what the model leaves "
             "out of water that scatters: light scattered more than once, and blur; allowed: "
-            "--model-tolerance {}. Lower altitudes and wider beams reduce it",
+            "--model-tolerance {}. Lower altitudes ({}) and wider beams reduce it",
             rig_file,
             *worst,
             kChannelNames[static_cast<std::size_t>(worst - model.error.begin())],
             rig.sled.altitude_m,
-            tolerance);
+            tolerance,
+            altitude_by);
     }
     return model;
 }

@@ -12,6 +12,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace aphotic::cli {
 
@@ -19,10 +20,13 @@ inline constexpr double kModelTolerance = 0.1;
 
 void add_model_tolerance(CLI::App& app, double& tolerance);
 
-// Empty for water that does not scatter. Throws InputError if it exceeds the tolerance.
-[[nodiscard]] std::optional<ManifestModel> model_error(const Rig& rig,
-                                                       const std::string& rig_file,
-                                                       double tolerance);
+// Empty for water that does not scatter. Throws InputError if it exceeds the tolerance, and names
+// the option or key that sets the altitude.
+[[nodiscard]] std::optional<ManifestModel> model_error(
+    const Rig& rig,
+    const std::string& rig_file,
+    double tolerance,
+    std::string_view altitude_by = "sled.altitude_m");
 
 void print_model_error(const std::optional<ManifestModel>& model);
 void put_model_error(nlohmann::ordered_json& json, const std::optional<ManifestModel>& model);

@@ -232,7 +232,7 @@ std::optional<ManifestModel> model_of(const SimulatedSurvey& survey,
                                       const PlanningOptions& planning) {
     Rig rig = survey.rig;
     rig.sled = std::ranges::max(survey.corners, {}, &Sled::altitude_m);
-    return model_error(rig, planning.rig_file, planning.model_tolerance);
+    return model_error(rig, planning.rig_file, planning.model_tolerance, "--altitude");
 }
 
 // Each with an image of that kind.

@@ -92,6 +92,12 @@ void enlarge_pixels(Camera& camera, double factor, int width_px, int height_px) 
     camera.pixel_pitch_m *= factor;
 }
 
+void scale_to_width(Camera& camera, int width_px) {
+    const double factor = static_cast<double>(camera.width_px) / width_px;
+    const double height_px = std::max(1.0, std::round(camera.height_px / factor));
+    enlarge_pixels(camera, factor, width_px, static_cast<int>(height_px));
+}
+
 Pinhole pinhole_about(const Camera& camera) {
     if (!camera.lens) {
         return {.focal_length_m = camera.focal_length_m,

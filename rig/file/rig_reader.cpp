@@ -340,15 +340,6 @@ Readout read_readout(Section& camera, bool is_mono) {
     return readout;
 }
 
-// The same view in fewer pixels, of the same shape: part of a row may be lost or gained at the
-// edge.
-void scale_down(double scale, Camera& camera) {
-    const auto width_px = std::max(1, static_cast<int>(std::lround(scale * camera.width_px)));
-    const double factor = static_cast<double>(camera.width_px) / width_px;
-    const auto height_px = std::max(1, static_cast<int>(std::lround(camera.height_px / factor)));
-    enlarge_pixels(camera, factor, width_px, height_px);
-}
-
 Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
     section.refuse_keys_but(
         "name, resolution, pixel_pitch_um, focal_length_mm, fov_deg, calibration, vignetting, "
@@ -382,7 +373,10 @@ Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
     }
     read_place(section, mounting);
     (void)section.text_or("name", "a string in quotes", "");  // chooses it (rig_cameras.h)
-    if (section.has("scale")) scale_down(section.number("scale", kScale), camera);
+    if (section.has("scale")) {
+        const double columns = std::round(section.number("scale", kScale) * camera.width_px);
+        scale_to_width(camera, static_cast<int>(std::max(1.0, columns)));
+    }
     return camera;
 }
 

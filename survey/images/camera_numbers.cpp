@@ -233,14 +233,12 @@ void require_whole_view(const std::vector<ImageFile>& files,
 
 std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images) {
     const PlaneSize rig{camera.width_px, camera.height_px};
-    const auto is_same_shape = std::int64_t{rig.width_px} * images.height_px ==
-                               std::int64_t{rig.height_px} * images.width_px;
-    if (!is_same_shape || rig.width_px == images.width_px) return std::nullopt;
+    if (rig.width_px == images.width_px) return std::nullopt;
     if (std::max(images.width_px, images.height_px) > kLargestImagePx) return std::nullopt;
-    enlarge_pixels(camera,
-                   static_cast<double>(rig.width_px) / images.width_px,
-                   images.width_px,
-                   images.height_px);
+    Camera scaled = camera;
+    scale_to_width(scaled, images.width_px);
+    if (scaled.height_px != images.height_px) return std::nullopt;
+    camera = std::move(scaled);
     return rig;
 }
 

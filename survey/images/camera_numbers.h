@@ -116,8 +116,9 @@ void require_whole_view(const std::vector<ImageFile>& files,
                         const CameraNumbers& camera,
                         const Camera& rig);
 
-// Changes a camera's number of pixels but not its view, if the shape is the same, and returns its
-// former size. Empty, and the camera unchanged, if the number is the same or the shape differs.
+// Changes a camera's number of pixels but not its view, if the shape is the same to the nearest
+// row, as after --scale, and returns its former size. Empty, and the camera unchanged, if the
+// number is the same or the shape differs.
 [[nodiscard]] std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images);
 
 }  // namespace aphotic

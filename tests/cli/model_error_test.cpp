@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::model_error_test {
@@ -47,14 +48,17 @@ TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
 }
 
 TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
-    for (const Arguments& command :
-         std::vector<Arguments>{"plan rig.toml",
-                                "trace rig.toml -o out",
-                                "lightmap rig.toml -o map.exr",
-                                "lightmap rig.toml -o out --altitude 1:2:1"}) {
+    const std::vector<std::pair<Arguments, std::string>> commands{
+        {"plan rig.toml", "sled.altitude_m"},
+        {"trace rig.toml -o out", "sled.altitude_m"},
+        {"lightmap rig.toml -o map.exr", "--altitude"},
+        {"lightmap rig.toml -o out --altitude 1:2:1", "--altitude"},
+        {"survey rig.toml -o dive", "--altitude"}};
+    for (const auto& [command, altitude_by] : commands) {
         refused(command + "--model-tolerance 1e-9",
                 "in what the model leaves out of water that scatters: light scattered more than "
-                "once, and blur; allowed: --model-tolerance 1e-09");
+                "once, and blur; allowed: --model-tolerance 1e-09. Lower altitudes (" +
+                    altitude_by + ") and wider beams reduce it");
     }
 }
 

@@ -413,9 +413,20 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     refused(correct_by_rig("stereo", levels("--bayer RGGB")),
             "found 64 x 48 pixels; allowed: 32 x 48, like the map; if two cameras' images are side "
             "by side, --half");
-    write_rig("[128, 95]", "68.53125");
+    write_rig("[128, 93]", "68.53125");
     refused(correct_by_rig("other", levels("--bayer RGGB")),
-            "found 64 x 48 pixels; allowed: 128 x 95, like the map");
+            "found 64 x 48 pixels; allowed: 128 x 93, like the map");
+}
+
+// --scale 0.2 makes 64 x 48 of 321 x 241 pixels, which is 64.2 x 48.2.
+TEST_F(RigOfSurvey, ImagesOfAScaledSurveyAreOfItsRig) {
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    write_rig("[321, 241]", "27.4125");
+    done(correct_by_rig("by_images", levels("--bayer RGGB")),
+         "rig of 321 x 241 pixels scaled to 64 x 48\n");
+    done(correct_by_rig("by_key", levels("--bayer RGGB --set camera.scale=0.2")));
+    EXPECT_EQ(text_of("by_images/a.exr"), text_of("by_key/a.exr"));
 }
 
 TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
