@@ -25,6 +25,24 @@ std::vector<Tile> tiles_of(const ImageRows& rows, int tile_px) {
     return tiles;
 }
 
+bool is_within(const Tile& tile, const ImageRows& rows) {
+    return tile.row >= rows.first && tile.row + tile.height <= rows.first + rows.count;
+}
+
+TilePlaneMap plane_in(const ImageRows& rows, std::size_t plane, const Tile& tile) {
+    const std::size_t line = plane * static_cast<std::size_t>(rows.count) +
+                             static_cast<std::size_t>(tile.row - rows.first);
+    float* const first =
+        rows.samples + line * static_cast<std::size_t>(rows.width_px) + tile.column;
+    TilePlaneMap map(first, tile.height, tile.width, Eigen::OuterStride<>(rows.width_px));
+    map.setZero();
+    return map;
+}
+
+TilePlaneMap plane_of(TilePlane& plane) {
+    return {plane.data(), plane.rows(), plane.cols(), Eigen::OuterStride<>(plane.cols())};
+}
+
 void copy_rows(const std::vector<TilePlane>& planes, const Tile& tile, const ImageRows& rows) {
     const int first = std::max(tile.row, rows.first);
     const int end = std::min(tile.row + tile.height, rows.first + rows.count);

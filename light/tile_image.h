@@ -87,6 +87,11 @@ struct ImageRows {
 [[nodiscard]] std::vector<Tile> tiles_of(const ImageRows& rows, int tile_px);
 
 using TilePlane = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using TilePlaneMap = Eigen::Map<TilePlane, Eigen::Unaligned, Eigen::OuterStride<>>;
+[[nodiscard]] bool is_within(const Tile& tile, const ImageRows& rows);
+// A tile of an image's plane, set to 0.
+[[nodiscard]] TilePlaneMap plane_in(const ImageRows& rows, std::size_t plane, const Tile& tile);
+[[nodiscard]] TilePlaneMap plane_of(TilePlane& plane);
 void copy_rows(const std::vector<TilePlane>& planes, const Tile& tile, const ImageRows& rows);
 
 // A tile of the image's grid, and its pixels' sums so far.
@@ -96,10 +101,12 @@ class TilePainter {
     using Pieces = std::vector<typename Light::Piece>;
 
     TilePainter(Light& light, const Tile& whole, const ImageRows& rows)
-        : light_(light),
-          whole_(whole),
-          rows_(rows),
-          planes_(light.planes(), TilePlane::Zero(whole.height, whole.width)) {}
+        : light_(light), whole_(whole), rows_(rows) {
+        if (!is_within(whole, rows))
+            own_.assign(light.planes(), TilePlane::Zero(whole.height, whole.width));
+        for (std::size_t c = 0; c < light.planes(); ++c)
+            planes_.push_back(own_.empty() ? plane_in(rows, c, whole) : plane_of(own_[c]));
+    }
 
     void paint(const Tile& tile, const Pieces& pieces) {
         const bool is_asked_for =
@@ -119,7 +126,7 @@ class TilePainter {
         for (const Tile& quarter : quarters(tile)) paint(quarter, rest);
     }
 
-    [[nodiscard]] const std::vector<TilePlane>& planes() const { return planes_; }
+    void copy_own_rows() const { copy_rows(own_, whole_, rows_); }
 
   private:
     using Nodes = std::vector<TileNodes>;
@@ -228,11 +235,17 @@ class TilePainter {
             TileNodes sum = TileNodes::Zero();
             for (const Polynomial& one : all)
                 if (one.is_right) sum += one.nodes[c];
-            const Eigen::Matrix<float, kTilePoints, Eigen::Dynamic> rows =
-                sum.cast<float>() * tile_axis(tile.width).to_pixels.transpose();
+            using NodeRows = Eigen::Matrix<float,
+                                           kTilePoints,
+                                           Eigen::Dynamic,
+                                           Eigen::RowMajor,
+                                           kTilePoints,
+                                           kTilePixels>;
+            const NodeRows rows =
+                sum.cast<float>().lazyProduct(tile_axis(tile.width).to_pixels.transpose());
             planes_[c]
                 .block(tile.row - whole_.row, tile.column - whole_.column, tile.height, tile.width)
-                .noalias() += tile_axis(tile.height).to_pixels * rows;
+                .noalias() += tile_axis(tile.height).to_pixels.lazyProduct(rows);
         }
     }
 
@@ -270,8 +283,9 @@ class TilePainter {
     Light& light_;
     Tile whole_;
     ImageRows rows_;
-    std::vector<TilePlane> planes_;
-    PlaceSignals so_far_{};  // of the current pixel: zeroing it for each takes as long
+    std::vector<TilePlane> own_;        // of a tile that is only partly asked for
+    std::vector<TilePlaneMap> planes_;  // these, or the image's
+    PlaceSignals so_far_{};             // of the current pixel: zeroing it for each takes as long
 };
 
 // All pieces, with a thread for each of these lights.
@@ -284,7 +298,7 @@ void paint_tiles(std::vector<Light>& by_thread,
     parallel_for(tiles.size(), by_thread.size(), [&](std::size_t k, std::size_t thread) {
         TilePainter<Light> painter(by_thread[thread], tiles[k], rows);
         painter.paint(tiles[k], pieces);
-        copy_rows(painter.planes(), tiles[k], rows);
+        painter.copy_own_rows();
     });
 }
 
