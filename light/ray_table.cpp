@@ -16,25 +16,24 @@ namespace {
 constexpr std::size_t kNodesOfCubic = 4;
 
 // Lagrange's cubic through 0, 1, 2, 3.
-std::array<double, kNodesOfCubic> cubic_weights(double u) {
-    const double a = u;
-    const double b = u - 1.0;
-    const double c = u - 2.0;
-    const double d = u - 3.0;
+template <typename T>
+std::array<T, kNodesOfCubic> cubic_weights(const T& u) {
+    const T a = u;
+    const T b = u - 1.0;
+    const T c = u - 2.0;
+    const T d = u - 3.0;
     return {-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0};
 }
 
-// The first of the four nodes around a place, and their weights.
-struct Stencil {
-    std::size_t first;
-    std::array<double, kNodesOfCubic> weights;
-};
+// The first of the four nodes around a place.
+std::size_t first_node(double node, std::size_t nodes) {
+    const double last = static_cast<double>(nodes - kNodesOfCubic);
+    return static_cast<std::size_t>(std::clamp(std::floor(node) - 1.0, 0.0, last));
+}
 
-Stencil stencil_at(double place, double pixels, std::size_t nodes) {
-    const double steps = static_cast<double>(nodes) - 1.0;
-    const double node = place / pixels * steps;
-    const double first = std::clamp(std::floor(node) - 1.0, 0.0, steps - 3.0);
-    return {.first = static_cast<std::size_t>(first), .weights = cubic_weights(node - first)};
+void normalise(PackVector& way) {
+    const Pack per_length = 1.0 / root(dot(way, way));
+    for (Pack& along : way) along *= per_length;
 }
 
 }  // namespace
@@ -46,6 +45,11 @@ RayTable::Axis::Axis(int count, double most_apart_px)
 
 double RayTable::Axis::place_px(double node) const {
     return pixels * (node / (static_cast<double>(nodes) - 1.0));
+}
+
+template <typename T>
+T RayTable::Axis::node_at(const T& place_px) const {
+    return place_px / pixels * (static_cast<double>(nodes) - 1.0);
 }
 
 RayTable::RayTable(const Rig& rig, std::vector<double> lambda_nm, int threads)
@@ -118,38 +122,95 @@ bool RayTable::is_exact() const {
 }
 
 void RayTable::look(double column, double row, std::span<WaterRay> rays) const {
-    if (nodes_.empty()) {
-        for (std::size_t k = 0; k < rays.size(); ++k)
-            rays[k] = pixel_ray(rig_, column, row, lambda_nm_[k]);
-        return;
-    }
-    const Stencil across = stencil_at(column, across_.pixels, across_.nodes);
-    const Stencil down = stencil_at(row, down_.pixels, down_.nodes);
-    const std::size_t wavelengths = lambda_nm_.size();
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        Eigen::Array<double, 6, 1> sum = Eigen::Array<double, 6, 1>::Zero();
-        for (std::size_t j = 0; j < kNodesOfCubic; ++j) {
-            const Node* node =
-                &nodes_[((down.first + j) * across_.nodes + across.first) * wavelengths + k];
-            Eigen::Array<double, 6, 1> of_row = Eigen::Array<double, 6, 1>::Zero();
-            for (std::size_t i = 0; i < kNodesOfCubic; ++i, node += wavelengths)
-                of_row +=
-                    across.weights[i] * Eigen::Map<const Eigen::Array<double, 6, 1>>(node->data());
-            sum += down.weights[j] * of_row;
+        if (nodes_.empty()) {
+            rays[k] = pixel_ray(rig_, column, row, lambda_nm_[k]);
+            continue;
         }
+        const RaySum sum = sum_at(column, row, k);
         rays[k] = {.origin_m = sum.head<3>(), .direction = sum.tail<3>().matrix().normalized()};
+    }
+}
+
+RayTable::RaySum RayTable::sum_at(double column, double row, std::size_t wavelength) const {
+    const double across = across_.node_at(column);
+    const std::size_t first = first_node(across, across_.nodes);
+    const auto weights = cubic_weights(across - static_cast<double>(first));
+    const auto along = nodes_along(first, down_.node_at(row), wavelength);
+    RaySum sum = RaySum::Zero();
+    for (std::size_t i = 0; i < kNodesOfCubic; ++i) sum += weights[i] * along[i];
+    return sum;
+}
+
+// At the height `down` among the nodes, those of four columns.
+std::array<RayTable::RaySum, kNodesOfCubic> RayTable::nodes_along(std::size_t first_across,
+                                                                  double down,
+                                                                  std::size_t wavelength) const {
+    const std::size_t first = first_node(down, down_.nodes);
+    const auto weights = cubic_weights(down - static_cast<double>(first));
+    std::array<RaySum, kNodesOfCubic> along;
+    for (std::size_t i = 0; i < kNodesOfCubic; ++i) {
+        along[i].setZero();
+        for (std::size_t j = 0; j < kNodesOfCubic; ++j) {
+            const std::size_t place = (first + j) * across_.nodes + first_across + i;
+            const Node& node = nodes_[place * lambda_nm_.size() + wavelength];
+            along[i] += weights[j] * Eigen::Map<const RaySum>(node.data());
+        }
+    }
+    return along;
+}
+
+// Pixels that are neighbours in a row mostly lie between the same nodes.
+bool RayTable::look_along_row(const Lanes& column,
+                              const Lanes& row,
+                              std::span<LaneRay> rays) const {
+    if (nodes_.empty()) return false;
+    if (std::ranges::any_of(row.lane, [&](double one) { return one != row[0]; })) return false;
+    const auto [least, most] = std::ranges::minmax(column.lane);
+    const std::size_t first = first_node(across_.node_at(least), across_.nodes);
+    if (first_node(across_.node_at(most), across_.nodes) != first) return false;
+    const double down = down_.node_at(row[0]);
+    for (std::size_t j = 0; j < rays.size(); ++j) {
+        const auto along = nodes_along(first, down, j);
+        for_each_pack([&](std::size_t k) {
+            const Pack across = across_.node_at(column.pack(k));
+            const auto w = cubic_weights(across - Pack(static_cast<double>(first)));
+            const auto sum = [&](Eigen::Index c) {
+                return w[0] * along[0](c) + w[1] * along[1](c) + w[2] * along[2](c) +
+                       w[3] * along[3](c);
+            };
+            set_pack(rays[j].origin_m, k, {sum(0), sum(1), sum(2)});
+            set_pack(rays[j].direction, k, {sum(3), sum(4), sum(5)});
+        });
+    }
+    return true;
+}
+
+void RayTable::look_at_each(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        for (std::size_t j = 0; j < rays.size(); ++j) {
+            if (nodes_.empty()) {
+                const WaterRay ray = pixel_ray(rig_, column[k], row[k], lambda_nm_[j]);
+                set_lane(rays[j].origin_m, k, ray.origin_m);
+                set_lane(rays[j].direction, k, ray.direction);
+                continue;
+            }
+            const RaySum sum = sum_at(column[k], row[k], j);
+            set_lane(rays[j].origin_m, k, sum.head<3>());
+            set_lane(rays[j].direction, k, sum.tail<3>());
+        }
     }
 }
 
 void RayTable::look(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const {
     if (rig_.camera.lens || rig_.camera.port) {
-        std::vector<WaterRay> found(rays.size());
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            look(column[k], row[k], found);
-            for (std::size_t j = 0; j < rays.size(); ++j) {
-                set_lane(rays[j].origin_m, k, found[j].origin_m);
-                set_lane(rays[j].direction, k, found[j].direction);
-            }
+        if (!look_along_row(column, row, rays)) look_at_each(column, row, rays);
+        for (LaneRay& ray : rays) {
+            for_each_pack([&](std::size_t k) {
+                PackVector way = pack(ray.direction, k);
+                normalise(way);
+                set_pack(ray.direction, k, way);
+            });
         }
         return;
     }
@@ -157,8 +218,7 @@ void RayTable::look(const Lanes& column, const Lanes& row, std::span<LaneRay> ra
     ray.origin_m = every_lane(Eigen::Vector3d::Zero());
     for_each_pack([&](std::size_t k) {
         PackVector way = pinhole_way(rig_.camera, column.pack(k), row.pack(k));
-        const Pack per_length = 1.0 / root(dot(way, way));
-        for (Pack& along : way) along *= per_length;
+        normalise(way);
         set_pack(ray.direction, k, way);
     });
 }

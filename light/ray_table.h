@@ -12,6 +12,8 @@
 #include "light/lane_ray.h"
 #include "rig/rig.h"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
 #include <span>
@@ -38,12 +40,23 @@ class RayTable {
     struct Axis {
         Axis(int pixels, double most_apart_px);
         [[nodiscard]] double place_px(double node) const;
+        template <typename T>
+        [[nodiscard]] T node_at(const T& place_px) const;
         double pixels;
         std::size_t nodes;
     };
     using Node = std::array<double, 6>;  // origin and direction
+    using RaySum = Eigen::Array<double, 6, 1>;
 
     void make_nodes(int threads);
+    // Directions are not of unit length.
+    [[nodiscard]] RaySum sum_at(double column, double row, std::size_t wavelength) const;
+    [[nodiscard]] std::array<RaySum, 4> nodes_along(std::size_t first_across,
+                                                    double down,
+                                                    std::size_t wavelength) const;
+    // False if these places are not in a row between the same nodes.
+    bool look_along_row(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const;
+    void look_at_each(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const;
     [[nodiscard]] bool is_exact() const;
 
     Rig rig_;

@@ -163,6 +163,7 @@ class TilePainter {
         return planes_[plane](tile.row - whole_.row + y, tile.column - whole_.column + x);
     }
 
+    // Row by row: rays of places in a row are found together (ray_table.h).
     void take_nodes(const Tile& tile, Polynomials& all) {
         constexpr std::size_t kNodes = std::size_t{kTilePoints} * kTilePoints;
         const TileAxis& across = tile_axis(tile.width);
@@ -170,11 +171,13 @@ class TilePainter {
         const auto at = [&](std::size_t k) {
             return PixelPlace{across.points_px[k % kTilePoints], down.points_px[k / kTilePoints]};
         };
-        for (std::size_t k = 0; k < kNodes && !none_is_right(all); k += kLanes) {
-            const auto places = places_in(tile, k, kNodes, at, false);
+        for (std::size_t k = 0, end = 0; k < kNodes && !none_is_right(all); k = end) {
+            const std::size_t row_end = (k / kTilePoints + 1) * kTilePoints;
+            const auto places = places_in(tile, k, row_end, at, false);
+            end = std::min(k + kLanes, row_end);
             for (Polynomial& one : all) {
                 const auto found = light_.find(one.group, places, false);
-                for (std::size_t node = k; node < std::min(k + kLanes, kNodes); ++node) {
+                for (std::size_t node = k; node < end; ++node) {
                     const auto& of_node = Light::of_lane(found, node - k);
                     one.is_right &= light_.is_within(of_node);
                     for (std::size_t c = 0; c < planes_.size(); ++c)

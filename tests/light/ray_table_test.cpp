@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/ray_table.h"
 
+#include "light/lane_ray.h"
 #include "rig/camera/port.h"
 #include "rig/geometry.h"
 #include "support/random_camera.h"
@@ -67,6 +68,40 @@ TEST(RayTable, HasTheRaysThroughEveryPort) {
         give_port(kind, dice, rig.camera);
         if (kind == PortKind::Flat) give_lens(LensKind::RadialTangential, dice, rig.camera);
         expect_pixel_rays(rig);
+    }
+}
+
+// In a row of pixels between the same nodes, across nodes, and in no row.
+TEST(RayTable, OfLanesHasTheRaysOfTheirPlaces) {
+    constexpr double kRounding = 1e-14;
+    Dice dice(kSeed + 3);
+    Rig rig = rig_of(kSeed + 3);
+    give_port(PortKind::Flat, dice, rig.camera);
+    const RayTable table(rig, {kGreen_nm, kRed_nm}, 1);
+    ASSERT_TRUE(table.has_nodes());
+    for (const auto& [step_across, step_down] :
+         {std::array{1.0, 0.0}, {37.0, 0.0}, {-1.0, 0.0}, {20.0, 13.0}}) {
+        for (double row = 1.5; row < 100.0; row += 9.0) {
+            Lanes columns{};
+            Lanes rows{};
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                columns[k] =
+                    (step_across < 0.0 ? 290.5 : 0.5) + step_across * static_cast<double>(k);
+                rows[k] = row + step_down * static_cast<double>(k);
+            }
+            std::array<LaneRay, 2> found;
+            table.look(columns, rows, found);
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                std::array<WaterRay, 2> single;
+                table.look(columns[k], rows[k], single);
+                for (std::size_t j = 0; j < 2; ++j) {
+                    const auto direction = vector_of_lane(found[j].direction, k);
+                    EXPECT_LT((direction - single[j].direction).norm(), kRounding);
+                    const auto origin_m = vector_of_lane(found[j].origin_m, k);
+                    EXPECT_LT((origin_m - single[j].origin_m).norm(), kRounding);
+                }
+            }
+        }
     }
 }
 
