@@ -70,7 +70,8 @@ void ProgressLine::repeat(const std::stop_token& stop) {
     block_signals();
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
-        ended_.wait_until(lock, stop, due_, [] { return false; });
+        const Clock::time_point due = due_;  // which is read while the lock is not held
+        ended_.wait_until(lock, stop, due, [] { return false; });
         if (!stop.stop_requested()) print_if_due();
     }
 }

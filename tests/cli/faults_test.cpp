@@ -35,7 +35,8 @@ class Faults : public CommandTest {
     // Two frames.
     [[nodiscard]] CommandResult render(const std::map<std::string, std::string>& environment = {},
                                        const Arguments& more = {}) const {
-        return aphotic("render rig.toml -o out --wavelengths 450,500,550,600" + more, environment);
+        return aphotic("render rig.toml -o out --quiet --wavelengths 450,500,550,600" + more,
+                       environment);
     }
     [[nodiscard]] fs::path frame(std::size_t index) const {
         return image_path(path("out"), read_manifest(path("out")).frames[index]);
