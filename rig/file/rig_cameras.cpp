@@ -109,9 +109,9 @@ void apply(std::span<const RigSetting> settings, bool is_chosen, RigText& text) 
         if (is_chosen || !one.key.starts_with("camera.")) text.set_toml(one.key, one.value);
 }
 
-// To a thousandth of a nanometre, for readers.
+// To a tenth of a picometre, for readers.
 std::vector<double> numbers_of(const Vector3d& vector) {
-    constexpr double kSteps = 1e12;
+    constexpr double kSteps = 1e13;
     const Vector3d rounded = (kSteps * vector).array().round() / kSteps;
     return {rounded.begin(), rounded.end()};
 }

@@ -104,11 +104,13 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     numbers.fore_tilt_deg = 26.0;
     numbers.multiple = 1.3;
     write_rigs(of_few_pixels(), numbers);
-    fly("--images 20 --texture 0.005");
+    // Of 20, other noise in 330 of 140,000 pixels made an error of 1.2 degrees of 0.75: it is widened
+    // by how far fits to halves of the images lie apart.
+    fly("--images 40 --texture 0.005");
     const std::string out =
         done(by_images(kCamera + "--blocks 12"), "correction by this rig is expected to be even to")
             .out;
-    EXPECT_TRUE(has(out, "splines fitted to 20 images\n"));
+    EXPECT_TRUE(has(out, "splines fitted to 40 images\n"));
     EXPECT_TRUE(has(out, "not fitted, as the rig has them: floor\n"));
 
     const Json json = json_in("fitted/fit.json");
@@ -118,9 +120,6 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     EXPECT_NEAR(number("water.multiple").at("value").get<double>(),
                 1.0,
                 kSigmas * error_of("water.multiple"));
-    // Errors are widened by how far fits to halves of these images lie apart, ten each: by other
-    // noise in 330 of 140,000 pixels, 0.75 degrees became 1.2.
-    constexpr double kUsefulError_deg = 2.0;
     const Rig truth = read_rig(path("truth.toml"));
     const Rig fitted = read_rig(path("fitted/fitted.toml"));
     for (std::size_t s = 0; s < 2; ++s) {
@@ -129,7 +128,7 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
             std::hypot(error_of(key + ".aim_along_deg"), error_of(key + ".aim_across_deg"));
         const double off_rad = std::acos(truth.strobes[s].axis.dot(fitted.strobes[s].axis));
         EXPECT_LT(kDegreesPerRadian * off_rad, kSigmas * error_deg) << key;
-        EXPECT_LT(error_deg, kUsefulError_deg) << key;
+        EXPECT_LT(error_deg, 1.0) << key;
     }
     EXPECT_EQ(fitted.strobes[0].beam.name, "fitted");
     constexpr double kOnce = 3.0;  // one sample of an rms, of few directions at worst

@@ -24,9 +24,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Places and axes are written to 1e-12 a coordinate: each is off by up to 0.9e-12, a distance
-// between two of them by twice that.
-constexpr double kRounding = 2e-12;
+constexpr double kRounding = 1e-12;
 
 // A stereo pair; the second camera has a port of its own, and the place and angles of `second`.
 std::string two_cameras(const std::string& second) {
