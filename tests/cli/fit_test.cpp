@@ -104,8 +104,8 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     numbers.fore_tilt_deg = 26.0;
     numbers.multiple = 1.3;
     write_rigs(of_few_pixels(), numbers);
-    // Of 20, other noise in 330 of 140,000 pixels made an error of 1.2 degrees of 0.75: it is widened
-    // by how far fits to halves of the images lie apart.
+    // Errors are widened by how far fits to halves of the images lie apart: of 20, other noise in
+    // 330 of 140,000 pixels made 1.2 degrees of 0.75.
     fly("--images 40 --texture 0.005");
     const std::string out =
         done(by_images(kCamera + "--blocks 12"), "correction by this rig is expected to be even to")
