@@ -140,7 +140,7 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     EXPECT_LT(unevenness("rig.toml"), kOnce * by_rig);
 
     const Json source = json.at("fitted_to");
-    EXPECT_EQ(Json({source["images"], source["block_px"], source["beam"]}), Json({20, 8, "table"}));
+    EXPECT_EQ(Json({source["images"], source["block_px"], source["beam"]}), Json({40, 8, "table"}));
     constexpr double kRounding = 1e-9;
     const Json& covariance = json.at("covariance");
     for (std::size_t i = 0; i < json.at("numbers").size(); ++i) {
@@ -151,7 +151,7 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     }
 
     const std::string page = text_of("fitted/report.html");
-    for (const std::string part : {"splines fitted to 20 images",
+    for (const std::string part : {"splines fitted to 40 images",
                                    "Correction by this rig is expected to be even to",
                                    "What was found",
                                    "Not fitted, as the rig has them: floor.",
