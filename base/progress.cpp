@@ -70,7 +70,7 @@ void ProgressLine::repeat(const std::stop_token& stop) {
     block_signals();
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
-        const Clock::time_point due = due_;  // which is read while the lock is not held
+        const Clock::time_point due = due_;  // a copy: the wait reads it without the lock
         ended_.wait_until(lock, stop, due, [] { return false; });
         if (!stop.stop_requested()) print_if_due();
     }

@@ -38,8 +38,8 @@ template <typename T>
 // has fewer pixels by the same factor.
 void enlarge_pixels(Camera& camera, double factor, int width_px, int height_px);
 
-// The same view in so many columns, and as many rows as the shape asks for: half a row may be lost
-// or gained at the top and the bottom together.
+// The same view in this many columns, and in the nearest number of rows: up to half a row is lost
+// or gained.
 void scale_to_width(Camera& camera, int width_px);
 
 // The pinhole with square pixels whose image, with as many columns and rows and the same axis,
