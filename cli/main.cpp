@@ -146,7 +146,7 @@ aphotic::PageOrigin page_origin(int argc, char** argv) {
 // CLI11 counts values; which ones are missing is in the option's own pattern, such as LEAST,MOST.
 std::string words_of(const CLI::App& app, const CLI::Error& error) {
     static const std::regex kMismatch("(-[^:]*): At (least|most) [0-9]+ .* received ([0-9]+)");
-    const std::string words = error.what();
+    std::string words = error.what();
     std::smatch parts;
     if (!std::regex_match(words, parts, kMismatch)) return words;
     const std::vector<CLI::App*> chosen = app.get_subcommands();

@@ -55,7 +55,9 @@ class RayTable {
                                                     double down,
                                                     std::size_t wavelength) const;
     // False if these places are not in a row between the same nodes.
-    bool look_along_row(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const;
+    [[nodiscard]] bool look_along_row(const Lanes& column,
+                                      const Lanes& row,
+                                      std::span<LaneRay> rays) const;
     void look_at_each(const Lanes& column, const Lanes& row, std::span<LaneRay> rays) const;
     [[nodiscard]] bool is_exact() const;
 
