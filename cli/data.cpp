@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic data [NAME]: list the built-in tables, show, plot or export one of them, check a user's
-// table, or convert POV-Ray's splines to tables.
-#include "base/atomic_file.h"
+// aphotic data [NAME]: list the built-in tables, show, plot or export one of them, or check a
+// user's table.
 #include "base/csv.h"
-#include "base/error.h"
 #include "cli/command.h"
 #include "cli/option_words.h"
 #include "cli/options.h"
@@ -14,7 +12,6 @@
 #include "report/svg.h"
 #include "spectral/curve_loader.h"
 #include "spectral/refractive_index.h"
-#include "spectral/spline_import.h"
 #include "spectral/table.h"
 
 #include <fmt/format.h>
@@ -22,17 +19,12 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
-#include <list>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace aphotic::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kIndexStep_nm = 2.0;                 // of a plotted refractive index
 constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // the range used by cameras and lamps
@@ -43,21 +35,11 @@ constexpr double kPlotTemperature_c = 10.0;
 constexpr std::string_view kMetadataKeys =
     "title,role,quantity,unit,kind,form,formula,range,source,obtained,uncertainty,terms";
 
-// Options of --from-spline.
-struct SplineOptions {
-    std::string file;
-    std::string folder = ".";
-    std::string role = "reflectance";
-    std::string only = "*";
-    bool force = false;
-};
-
 struct DataCommandOptions {
     std::string name;
     bool csv = false;
     bool json = false;
     std::string plot_file;
-    SplineOptions splines;
 };
 
 struct Entry {
@@ -230,103 +212,7 @@ Plot plot_of(const Entry& entry) {
     });
 }
 
-// --- --from-spline: a scene file's spectra as tables, all of them or none ------------------------
-
-struct NewTable {
-    fs::path path;
-    std::string text;
-    SplineSpectrum spectrum;
-
-    [[nodiscard]] double first_nm() const { return spectrum.knots.front().lambda_nm; }
-    [[nodiscard]] double last_nm() const { return spectrum.knots.back().lambda_nm; }
-};
-
-std::vector<NewTable> tables_of(const SplineFile& found, const SplineOptions& options) {
-    const CurveRole role =
-        options.role == "lamp" ? CurveRole::LampSpectrum : CurveRole::Reflectance;
-    std::vector<NewTable> tables;
-    for (const SplineSpectrum& spectrum : found.spectra) {
-        tables.push_back({fs::path(options.folder) / spline_table_name(spectrum.identifier),
-                          spline_table(options.file, spectrum, role),
-                          spectrum});
-    }
-    return tables;
-}
-
-void refuse_to_overwrite(const std::vector<NewTable>& tables) {
-    for (const NewTable& table : tables) {
-        if (!fs::exists(fs::symlink_status(table.path))) continue;
-        throw InputError(
-            "{}: found a file of this name; allowed: none, unless --force is given, or another "
-            "folder by -o",
-            table.path.string());
-    }
-}
-
-// All files are complete before the first is renamed.
-void write_all(const std::vector<NewTable>& tables) {
-    std::list<AtomicFile> files;
-    for (const NewTable& table : tables) {
-        std::ofstream out(files.emplace_back(table.path).temporary(), std::ios::binary);
-        out << table.text;
-        out.close();
-        if (!out) throw RunError("{}: cannot be written", table.path.string());
-    }
-    for (AtomicFile& file : files) file.commit();
-}
-
-void note_what_differs(const SplineFile& found, const std::string& file) {
-    for (const std::size_t line : found.anonymous_lines) {
-        warn("{}:{}: skipped a spline without a name", file, line);
-    }
-    for (const SplineSpectrum& spectrum : found.spectra) {
-        if (spectrum.is_linear()) continue;
-        warn("{}:{}: {} is a {}: its knots are joined by straight lines",
-             file,
-             spectrum.line,
-             spectrum.identifier,
-             spectrum.form);
-    }
-}
-
-void print(const std::vector<NewTable>& tables) {
-    for (const NewTable& table : tables) {
-        say("wrote {}: {}, {} to {} nm, {} rows\n",
-            table.path.string(),
-            table.spectrum.identifier,
-            table.first_nm(),
-            table.last_nm(),
-            table.spectrum.knots.size());
-    }
-}
-
-nlohmann::json to_json(const std::vector<NewTable>& tables) {
-    nlohmann::json json = nlohmann::json::array();
-    for (const NewTable& table : tables) {
-        json.push_back({{"file", table.path.string()},
-                        {"identifier", table.spectrum.identifier},
-                        {"line", table.spectrum.line},
-                        {"form", table.spectrum.form},
-                        {"range_nm", {table.first_nm(), table.last_nm()}},
-                        {"rows", table.spectrum.knots.size()}});
-    }
-    return json;
-}
-
-ExitStatus write_spline_tables(const SplineOptions& options, bool as_json) {
-    const SplineFile found =
-        parse_splines(options.file, read_text_file(options.file), options.only);
-    const std::vector<NewTable> tables = tables_of(found, options);
-    if (!options.force) refuse_to_overwrite(tables);
-    make_folder(options.folder);
-    write_all(tables);
-    note_what_differs(found, options.file);
-    show(tables, as_json);
-    return kDone;
-}
-
 ExitStatus show_data(const DataCommandOptions& options) {
-    if (!options.splines.file.empty()) return write_spline_tables(options.splines, options.json);
     if (options.name.empty()) {
         std::vector<Entry> entries;
         for (const BuiltinTable& builtin : builtin_tables()) {
@@ -348,21 +234,6 @@ ExitStatus show_data(const DataCommandOptions& options) {
     return kDone;
 }
 
-void add_spline_options(CLI::App& app,
-                        CLI::Option* name,
-                        CLI::Option* csv,
-                        DataCommandOptions& options) {
-    SplineOptions& splines = options.splines;
-    const OptionGroup group(app, "Tables from POV-Ray's spectra");
-    auto* from = add_option(app, "--from-spline", splines.file)->excludes(name)->excludes(csv);
-    add_output_folder(app, splines.folder)->needs(from);
-    add_option(app, "--role", splines.role)
-        ->check(CLI::IsMember({"reflectance", "lamp"}))
-        ->needs(from);
-    add_option(app, "--only", splines.only)->needs(from);
-    add_flag(app, "--force", splines.force)->needs(from);
-}
-
 Action configure_data(CLI::App& app) {
     const auto options = std::make_shared<DataCommandOptions>();
     auto* name = add_option(app, "NAME", options->name);
@@ -370,7 +241,6 @@ Action configure_data(CLI::App& app) {
     add_flag(app, "--json", options->json)->excludes(csv);
     add_option(app, "--plot", options->plot_file)->needs(name);
     csv->needs(name);
-    add_spline_options(app, name, csv, *options);
     return [options] { return show_data(*options); };
 }
 

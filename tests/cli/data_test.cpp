@@ -59,65 +59,6 @@ TEST_F(CommandData, PlotsAreDrawn) {
     }
 }
 
-constexpr const char* kSplines =
-    "#declare D_Clay_01 = spline { linear_spline 380, 0.021 // blue\n"
-    "  400, 0.03, 730 .5 }\n"
-    "#declare D_Mud = spline { cubic_spline 380, 0.1 400, 0.2 500, 0.3 730, 0.4 }\n";
-
-TEST_F(CommandData, MakesTablesOfSplines) {
-    write_file(path("things.inc"), kSplines);
-    const CommandResult run = done(data("--from-spline things.inc -o tables"));
-    EXPECT_EQ(run.out,
-              "wrote tables/d-clay-01.csv: D_Clay_01, 380 to 730 nm, 3 rows\n"
-              "wrote tables/d-mud.csv: D_Mud, 380 to 730 nm, 4 rows\n");
-    EXPECT_EQ(
-        run.err,
-        "aphotic: things.inc:3: D_Mud is a cubic_spline: its knots are joined by straight lines\n");
-    const auto json = json_by(data("tables/d-clay-01.csv --json"));
-    EXPECT_EQ(json["role"], "reflectance");
-    EXPECT_EQ(json["values"][1], (std::vector<double>{400.0, 0.03}));
-    EXPECT_EQ(json["metadata"]["source"], "things.inc, line 1, #declare D_Clay_01");
-}
-
-TEST_F(CommandData, SplinesGoToThisFolderAsLampsWhenAsked) {
-    write_file(path("lamp.inc"), "#declare ES_Lamp = spline { 400, 0.5 700, 4.1 }");
-    const auto json = json_by(data("--from-spline lamp.inc --role lamp --json"));
-    EXPECT_EQ(json[0]["file"], "./es-lamp.csv");
-    EXPECT_EQ(json[0]["range_nm"], (std::vector<double>{400.0, 700.0}));
-    EXPECT_TRUE(has(aphotic(data({"es-lamp.csv"})).out, "lamp spectrum"));
-}
-
-TEST_F(CommandData, WritesNoTableUnlessAllCanBe) {
-    write_file(path("a.inc"),
-               std::string(kSplines) + "#declare IOR_Water = spline { 400, 1.34 700, 1.33 }\n");
-    refused(data("--from-spline a.inc -o tables"),
-            "a.inc:4: IOR_Water: found 1.34 at 400 nm; allowed for "
-            "reflectance: 0 to 1");
-    done(data("--from-spline a.inc -o tables --only D_Clay*"));
-    EXPECT_TRUE(fs::exists(path("tables/d-clay-01.csv")));
-    EXPECT_FALSE(fs::exists(path("tables/d-mud.csv")));
-}
-
-TEST_F(CommandData, OverwritesNoTableUnlessToldTo) {
-    write_file(path("a.inc"), kSplines);
-    write_file(path("d-mud.csv"), "mine");
-    refused(data("--from-spline a.inc"),
-            "d-mud.csv: found a file of this name; allowed: none, unless "
-            "--force is given");
-    EXPECT_EQ(text_of("d-mud.csv"), "mine");
-    EXPECT_FALSE(fs::exists(path("d-clay-01.csv")));
-    done(data("--from-spline a.inc --force"));
-    EXPECT_NE(text_of("d-mud.csv"), "mine");
-}
-
-TEST_F(CommandData, SplineOptionsNeedASplineFile) {
-    EXPECT_EQ(aphotic(data("sand --role lamp")).status, kBadInput);
-    EXPECT_EQ(aphotic(data("sand --from-spline a.inc")).status, kBadInput);
-    EXPECT_EQ(aphotic(data("--from-spline none.inc")).status, kBadInput);
-    write_file(path("a.inc"), kSplines);
-    EXPECT_EQ(aphotic(data("--from-spline a.inc --role paint")).status, kBadInput);
-}
-
 TEST_F(CommandData, UnknownNameNamesTheNearest) {
     refused(data({"pope-fry-1979"}), "pope-fry-1997");
 }

@@ -140,8 +140,6 @@ TEST_F(Terminal, IsNotFloodedOrSteeredByACell) {
         expect_refused(plan);
         write_file(path("beam.ies"), "IESNA:LM-63-2002\nTILT=" + cell + "\n");
         expect_refused("beam beam.ies");
-        write_file(path("splines.inc"), "#declare A = spline { linear_spline 300, " + cell);
-        expect_refused("data --from-spline splines.inc");
     }
 }
 
