@@ -99,7 +99,8 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_folder(options.folder);
     show(
-        Generated{generate(options.folder, scenes, all_cores()), options.folder, scenes.scene_file},
+        Generated{
+            generate(options.folder, scenes, all_cores()), options.folder, scenes.user_scene.path},
         options.json);
     return kDone;
 }

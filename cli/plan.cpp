@@ -247,7 +247,7 @@ void print(const Planned& made) {
         std::vector<std::string> names;
         for (const NamedSpectrum& material : scene->materials) names.push_back(material.name);
         say("The scene {} uses {}; its paths were measured on it\n",
-            scene->file.string(),
+            scene->file.path.string(),
             names.empty() ? "no spectrum by name" : fmt::format("{}", fmt::join(names, ", ")));
     }
     say("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",

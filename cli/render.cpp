@@ -148,7 +148,7 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
     Rendered rendered{.integration = integrate_folder(
                           options.folder, result.manifest, options.preview, options.folder),
                       .povray_version = povray.version,
-                      .jobs = scenes.scene_writes_files ? 1 : jobs,
+                      .jobs = scenes.user_scene.writes_files ? 1 : jobs,
                       .frames_rendered = result.rendered,
                       .frames_kept = result.kept,
                       .povray_s = frames.povray_s};

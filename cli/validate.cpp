@@ -172,7 +172,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
     const UserScene* const scene = planned.plan.scene.user_scene.get();
-    require_promise(scene != nullptr ? scene->file.string() : options.planning.rig_file,
+    require_promise(scene != nullptr ? scene->file.path.string() : options.planning.rig_file,
                     planned.plan.no_promise);
     // All invalid input is refused before a folder is made.
     PovRay povray;

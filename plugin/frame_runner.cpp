@@ -68,11 +68,12 @@ ProcessRequest in_scene_folder(ProcessRequest request,
     for (const std::string& path : options.library_paths) {
         request.arguments.push_back(path_option("+L", fs::absolute(path)));
     }
-    for (const std::string& path : library_paths(options.scene_folder, povray.version)) {
+    const fs::path folder = options.scene.path.parent_path();
+    for (const std::string& path : library_paths(folder, povray.version)) {
         request.arguments.push_back(path_option("+L", path));
     }
     request.environment.erase("POVINC");
-    request.folder = options.scene_folder;
+    request.folder = folder;
     return request;
 }
 
@@ -93,7 +94,7 @@ Running start(const PovRay& povray,
         .environment = {{"POVINI", (work / "render.ini").string()}, {"POVINC", ""}},
         .log = log,
         .stall_s = options.stall_s};
-    if (!options.scene_folder.empty()) {
+    if (!options.scene.path.empty()) {
         request = in_scene_folder(std::move(request), povray, frame, part->path(), options);
     }
     Process process(request);
@@ -169,7 +170,7 @@ void run_frames(const PovRay& povray,
     make_folder(folder / "povray" / "logs");
     make_folder(folder / "povray" / "frames");
     const auto slots =
-        options.one_at_a_time
+        options.scene.writes_files
             ? std::size_t{1}
             : std::min(frames.size(), static_cast<std::size_t>(std::max(1, options.jobs)));
     const int threads = std::max(1, options.jobs / static_cast<int>(slots));
@@ -196,6 +197,7 @@ void run_frames(const PovRay& povray,
                 running.push_back(start(povray, folder, frames[started++], threads, options));
             }
             check(ended, folder, width_px, height_px, options);
+            if (!options.scene.path.empty()) require_unchanged(options.scene);
             if (options.checked) options.checked(ended.frame, ended.part->path());
             ended.part->commit();
             if (options.arrived) options.arrived(ended.frame);

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "plugin/povray.h"
+#include "scene_gen/user_scene.h"
 #include "spectral/integrator.h"
 #include "spectral/manifest.h"
 
@@ -36,10 +37,9 @@ struct RunOptions {
     // Called with each image before it is checked: for scenes whose settings request another format
     // than EXR, makes the EXR from the file next to it.
     std::function<void(const ManifestFrame&, const std::filesystem::path& image)> convert{};
-    // For a user's scene: its folder, in which POV-Ray runs, and its include paths besides the
-    // user's own library_paths.
-    std::filesystem::path scene_folder{};
-    bool one_at_a_time = false;  // with all threads, since the scene reads its own files
+    // A user's scene: POV-Ray runs in its folder, with its include paths besides the user's own
+    // library_paths; one at a time, with all threads, if it may read files that it writes.
+    SceneFile scene{};
     std::vector<std::string> library_paths{};
     double stall_s = kStall_s;
     // Called for each frame, in the order in which they end: when its image is complete, before it
@@ -50,7 +50,8 @@ struct RunOptions {
 };
 
 // Renders the frames. If one fails, the others are stopped, and a RunError quotes POV-Ray; an
-// interruption throws Interrupted (base/interruption.h). Neither leaves files of unfinished frames.
+// interruption throws Interrupted (base/interruption.h), and a scene that was edited meanwhile a
+// RunError, since a frame of it may show either version. None leaves files of unfinished frames.
 // Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,

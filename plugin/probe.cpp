@@ -102,17 +102,17 @@ class SceneProbe {
                const fs::path& scene_file,
                const ProbeOptions& options)
         : povray_(povray), rig_(rig), options_(options) {
-        scene_.file = fs::absolute(scene_file).lexically_normal();
-        if (!fs::is_regular_file(scene_.file)) {
+        scene_.file.path = fs::absolute(scene_file).lexically_normal();
+        if (!fs::is_regular_file(scene_.file.path)) {
             throw InputError("{}: found no such file; allowed: a POV-Ray scene",
                              scene_file.string());
         }
-        if (!is_plain_name(scene_.file.filename().string())) {
+        if (!is_plain_name(scene_.file.path.filename().string())) {
             refuse(
                 "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, spaces, "
                 "and signs other than \" and \\");
         }
-        scene_.files_digest = digest_of_scene(scene_.file);
+        scene_.file = scene_file_at(scene_.file.path);
         for (const IncludeFile& file : include_library()) {
             write_text_file(folder_.path() / file.name, std::string(file.text));
         }
@@ -135,14 +135,14 @@ class SceneProbe {
         require_rigs_lamps(asked);
         has_water_ = asked.has_water && !rig_.water.is_clear();
         const std::vector<std::string> names(asked.reflectances.begin(), asked.reflectances.end());
-        scene_.materials = scene_materials(names, rig_, scene_.file);
+        scene_.materials = scene_materials(names, rig_, scene_.file.path);
         require_what_is_bounded(asked);
         tasks_known_ = tasks_done_ + kOnceForAll - 1 + static_cast<std::size_t>(asked.strobes);
         require_light_of_ours();
         measure(asked.strobes);
-        require_unchanged(scene_.file, scene_.files_digest);
+        require_unchanged(scene_.file);
         // Changes that no listing of files finds are visible in the pictures.
-        scene_.digest = sha256_of_text(scene_.files_digest + sha256_of_text(measured_));
+        scene_.digest = sha256_of_text(scene_.file.digest + sha256_of_text(measured_));
         return std::move(scene_);
     }
 
@@ -164,7 +164,7 @@ class SceneProbe {
     template <typename... T>
     [[noreturn]] void refuse(fmt::format_string<T...> what, T&&... with) const {
         throw InputError(
-            "{}: {}", scene_.file.string(), fmt::format(what, std::forward<T>(with)...));
+            "{}: {}", scene_.file.path.string(), fmt::format(what, std::forward<T>(with)...));
     }
 
     // From the rig's own floor: one e-folding over its longest path, and a peak of 2^6, in the
@@ -198,12 +198,13 @@ class SceneProbe {
         for (const std::string& path : options_.library_paths) {
             arguments.push_back(path_option("+L", fs::absolute(path)));
         }
-        for (const std::string& path : library_paths(scene_.file.parent_path(), povray_.version)) {
+        for (const std::string& path :
+             library_paths(scene_.file.path.parent_path(), povray_.version)) {
             arguments.push_back(path_option("+L", path));
         }
         return {.executable = povray_.executable,
                 .arguments = std::move(arguments),
-                .folder = scene_.file.parent_path(),
+                .folder = scene_.file.path.parent_path(),
                 .environment = {{"POVINI", (folder_.path() / "probe.ini").string()}},
                 .log = file_of(task, ".log"),
                 .stall_s = options_.stall_s};
@@ -213,7 +214,7 @@ class SceneProbe {
     // where it detects unclosed parts of the scene.
     [[nodiscard]] std::string in_users_files(std::string said, const Task& task) const {
         const std::string around = fmt::format("File '{}' line ", file_of(task, ".pov").string());
-        const std::string scene = scene_.file.filename().string();
+        const std::string scene = scene_.file.path.filename().string();
         for (auto at = said.find(around); at != std::string::npos; at = said.find(around, at + 1)) {
             const auto digits = said.find_first_not_of("0123456789", at + around.size());
             said.replace(at, digits - at, fmt::format("At the end of '{}'", scene));
@@ -231,7 +232,7 @@ class SceneProbe {
             in_users_files(error_in_log(read_log(file_of(task, ".log"))), task);
         const auto fail = [&]<typename Error>(const std::string& more) {
             throw Error("POV-Ray cannot read {} ({}){}{}{}",
-                        scene_.file.string(),
+                        scene_.file.path.string(),
                         end.words(),
                         said.empty() ? "" : ":\n",
                         said.c_str(),
@@ -246,12 +247,13 @@ class SceneProbe {
         try {
             return running.process.poll();
         } catch (const RunError& error) {
-            throw RunError("{}: {}", scene_.file.string(), error.what());
+            throw RunError("{}: {}", scene_.file.path.string(), error.what());
         }
     }
 
     void run_tasks(const std::vector<Task>& tasks) {
-        const std::size_t jobs = scene_.writes_files ? 1 : static_cast<std::size_t>(options_.jobs);
+        const std::size_t jobs =
+            scene_.file.writes_files ? 1 : static_cast<std::size_t>(options_.jobs);
         std::list<Running> running;
         std::size_t started = 0;
         std::size_t done = 0;
@@ -260,7 +262,7 @@ class SceneProbe {
             while (started < tasks.size() && running.size() < jobs) {
                 const Task& task = tasks[started++];
                 write_text_file(file_of(task, ".pov"),
-                                probe_sdl(rig_, scene_.file.filename().string(), task.frame));
+                                probe_sdl(rig_, scene_.file.path.filename().string(), task.frame));
                 running.push_back({.task = task, .process = Process(request_for(task))});
             }
             for (auto at = running.begin(); at != running.end();) {
@@ -303,16 +305,15 @@ class SceneProbe {
 
     [[nodiscard]] Asked read_scene() {
         const Task task = plain_task();
-        const fs::path folder = scene_.file.parent_path();
-        scene_.writes_files = opens_to_write(scene_.file);
+        const fs::path folder = scene_.file.path.parent_path();
         const auto before = written_files(folder);
         run_tasks({task});
-        scene_.writes_files |= written_files(folder) != before;
-        const std::string digest = digest_of_scene(scene_.file);
-        if (digest != scene_.files_digest) {
+        scene_.file.writes_files |= written_files(folder) != before;
+        const std::string digest = digest_of_scene(scene_.file.path);
+        if (digest != scene_.file.digest) {
             // It wrote a file that it names. Now that this file exists, the scene is in its final
             // state.
-            scene_.files_digest = digest;
+            scene_.file.digest = digest;
             run_tasks({task});
         }
         Asked asked;

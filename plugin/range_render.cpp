@@ -27,9 +27,7 @@ namespace {
 
 SceneSet distance_scenes(const RangeRender& render, const std::vector<SurveyPicture>& pictures) {
     SceneSet set;
-    set.scene_file = fs::absolute(render.scene).lexically_normal();
-    set.scene_files_digest = digest_of_scene(set.scene_file);
-    set.scene_writes_files = opens_to_write(set.scene_file);
+    set.user_scene = scene_file_at(render.scene);
     set.ini = render_ini(
         render.rig,
         {.emitter_lamps = {}, .format = FrameFormat::Png16, .ini_lines = render.ini_lines});
@@ -39,7 +37,7 @@ SceneSet distance_scenes(const RangeRender& render, const std::vector<SurveyPict
         set.manifest.frames.push_back({.name = name, .scene_sha256 = {}, .image_sha256 = {}});
         set.scenes.push_back({.name = name,
                               .sdl = distance_sdl(render.rig,
-                                                  set.scene_file.filename().string(),
+                                                  set.user_scene.path.filename().string(),
                                                   declarations(picture, render.declared),
                                                   picture.sled.altitude_m)});
     }
@@ -106,19 +104,15 @@ void render_ranges(const PovRay& povray,
     for (std::size_t i = 0; i < missing.size(); ++i)
         picture_of[set.manifest.frames[i].name] = &missing[i];
     RunOptions run = options;
-    run.scene_folder = set.scene_file.parent_path();
-    run.one_at_a_time = set.scene_writes_files;
+    run.scene = set.user_scene;
     run.convert = [](const ManifestFrame&, const fs::path& image) {
         exr_of_png_frame(image, White::IsWhite);
-    };
-    run.checked = [&](const ManifestFrame&, const fs::path&) {
-        require_unchanged(set.scene_file, set.scene_files_digest);
     };
     run.arrived = [&](const ManifestFrame& frame) {
         const fs::path made = image_path(folder, frame);
         const SurveyPicture& picture = *picture_of.at(frame.name);
         ExrReader reader(made);
-        require_dark(set.scene_file, picture, reader);
+        require_dark(set.user_scene.path, picture, reader);
         write_ranges(made, render.rig, picture, options.jobs);
         for (const fs::path& file : {made, log_path(folder, frame), scene_path(folder, frame)})
             fs::remove(file);

@@ -16,7 +16,6 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <utility>
 
 namespace aphotic {
 
@@ -107,22 +106,15 @@ void take_away_what_is_past(const fs::path& folder,
         take_away(folder / image);
 }
 
-struct OwnScene {
-    fs::path file{};  // absolute; empty: the rig's floor
-    std::string digest{};
-    bool is_alone = false;  // one frame at a time
-};
-
 // Renders these, and records each in the manifest when it is done.
 void run_noted(const PovRay& povray,
                const fs::path& folder,
                const std::vector<ManifestFrame>& frames,
-               const OwnScene& scene,
+               const SceneFile& scene,
                const RunOptions& options,
                Manifest& manifest) {
     RunOptions run = options;
-    run.scene_folder = scene.file.parent_path();
-    run.one_at_a_time = scene.is_alone;
+    run.scene = scene;
     if (manifest.png) {
         // A fog's light is limited to 1: without a surface in view, it is white.
         const bool has_fog = manifest.veil && manifest.veil->fog_m > 0.0;
@@ -133,8 +125,6 @@ void run_noted(const PovRay& povray,
         };
     }
     run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
-        // If the scene was edited during the render, a frame may show either version.
-        if (!scene.file.empty()) require_unchanged(scene.file, scene.digest);
         for (ManifestFrame& noted : manifest.frames) {
             if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
         }
@@ -150,26 +140,25 @@ fs::path scene_note(const fs::path& folder) {
 
 void write_scenes_and_note(const fs::path& folder, const SceneSet& set) {
     write_scenes(folder, set);
-    if (set.scene_file.empty()) {
+    if (set.user_scene.path.empty()) {
         take_away(scene_note(folder));
     } else {
-        write_text_file(scene_note(folder), set.scene_files_digest);
+        write_text_file(scene_note(folder), set.user_scene.digest);
     }
 }
 
 // For scenes written earlier: the digest must be the same, or frames would show two scenes.
-OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
+SceneFile scene_in(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.scene) return {};
-    const std::string& file = manifest.scene->file;
-    std::string digest = digest_of_scene(file);
+    SceneFile scene = scene_file_at(manifest.scene->file);
     const fs::path note = scene_note(folder);
-    if (!fs::exists(note) || read_text_file(note) != digest)
+    if (!fs::exists(note) || read_text_file(note) != scene.digest)
         throw InputError(
             "{}: found scenes made from an older {}; allowed: scenes from the current one, by "
             "`aphotic generate`",
             folder.string(),
-            file);
-    return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
+            scene.path.string());
+    return scene;
 }
 
 // POV-Ray's input for these frames: their scenes, the settings, and the includes.
@@ -227,14 +216,7 @@ RenderResult render(const PovRay& povray,
     note_veil(folder, set, Frames::ToBeRendered, options.jobs, result.manifest);
     write_manifest(folder, result.manifest);
 
-    run_noted(povray,
-              folder,
-              missing,
-              {.file = set.scene_file,
-               .digest = set.scene_files_digest,
-               .is_alone = set.scene_writes_files},
-              options,
-              result.manifest);
+    run_noted(povray, folder, missing, set.user_scene, options, result.manifest);
     note_veil(folder, set, Frames::Done, options.jobs, result.manifest);
     write_manifest(folder, result.manifest);
     return result;
@@ -246,7 +228,7 @@ RenderResult render_share(const PovRay& povray,
                           const RunOptions& options) {
     const Manifest whole = read_manifest(folder);
     require_format(povray, whole.frame_format());
-    const OwnScene scene = scene_in(folder, whole);
+    const SceneFile scene = scene_in(folder, whole);
     std::vector<ManifestFrame> frames = share_of(whole.frames, share);
     std::erase_if(frames, &ManifestFrame::done);
     const fs::path own = share_folder(folder, share);

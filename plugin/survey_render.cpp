@@ -22,17 +22,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-SceneSet scenes_at(const SurveyRender& render, const Sled& sled) {
+SceneSet scenes_at(const SurveyRender& render,
+                   const Sled& sled,
+                   const std::string& declarations = "") {
     Rig rig = render.rig;
     rig.sled = sled;
-    return make_scene_set(rig, render.plan);
-}
-
-std::string with_declarations(std::string scene, const std::string& declarations) {
-    const std::string version = "#version 3.7;\n";
-    const std::size_t at = scene.find(version);
-    if (at == std::string::npos) throw RunError("a generated scene does not say #version 3.7;");
-    return scene.insert(at + version.size(), declarations);
+    RenderPlan plan = render.plan;
+    if (plan.scene.user_scene) plan.scene.declarations = declarations;
+    return make_scene_set(rig, plan);
 }
 
 // A picture whose frames are in progress. Their names begin with its number.
@@ -45,16 +42,16 @@ struct PictureUnderWay {
 PictureUnderWay begun(const fs::path& folder,
                       const SurveyRender& render,
                       const SurveyPicture& picture) {
-    PictureUnderWay under_way{.image = picture.image, .scenes = scenes_at(render, picture.sled)};
+    PictureUnderWay under_way{
+        .image = picture.image,
+        .scenes = scenes_at(render, picture.sled, declarations(picture, render.declared))};
     SceneSet& set = under_way.scenes;
-    const std::string declared =
-        set.scene_file.empty() ? "" : declarations(picture, render.declared);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         ManifestFrame& frame = set.manifest.frames[f];
         frame = {.name = fmt::format("{:06}_{}", picture.number, frame.name),
                  .scene_sha256 = {},
                  .image_sha256 = {}};
-        write_text_file(scene_path(folder, frame), with_declarations(set.scenes[f].sdl, declared));
+        write_text_file(scene_path(folder, frame), set.scenes[f].sdl);
     }
     set.scenes.clear();
     under_way.frames_left = set.manifest.frames.size();
@@ -157,13 +154,7 @@ void render_pictures(const PovRay& povray,
         }
     }
     RunOptions run = options;
-    run.scene_folder = common.scene_file.parent_path();
-    run.one_at_a_time = common.scene_writes_files;
-    run.checked = [&](const ManifestFrame&, const fs::path&) {
-        // A frame of a scene that was edited during the render may show either version.
-        if (!common.scene_file.empty())
-            require_unchanged(common.scene_file, common.scene_files_digest);
-    };
+    run.scene = common.user_scene;
     run.arrived = [&](const ManifestFrame& frame) {
         PictureUnderWay& picture = *under_way.at(frame.name);
         if (--picture.frames_left == 0) integrate_picture(folder, options.jobs, picture);

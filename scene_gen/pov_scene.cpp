@@ -354,7 +354,7 @@ std::string header_of(const Rig& rig,
     }
     if (options.user_scene) {
         return header + fmt::format("//\n// Render in the folder of {}, see render.ini.\n",
-                                    sdl_comment(options.user_scene->file.filename().string()));
+                                    sdl_comment(options.user_scene->file.path.filename().string()));
     }
     return header +
            fmt::format(
@@ -393,11 +393,11 @@ std::string scene_sdl(const Rig& rig,
                       const SceneOptions& options,
                       const std::optional<BandScattering>& scattering = {}) {
     const std::string own =
-        options.user_scene ? options.user_scene->file.filename().string() : std::string();
+        options.user_scene ? options.user_scene->file.path.filename().string() : std::string();
     Band band = band_of(rig, parts, frame);
     band.scattering = scattering;
     return header_of(rig, name, frame, options, parts.unit_m) + "\n#version 3.7;\n" +
-           body_sdl(band, parts, options, own);
+           options.declarations + body_sdl(band, parts, options, own);
 }
 
 // The wavelengths of a frame as rendered for the veil.
@@ -421,18 +421,6 @@ BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> 
     const auto* hg = std::get_if<HenyeyGreenstein>(&veil.sampling.lobes[*lobe].kind);
     scattering.eccentricity = hg != nullptr ? std::optional(hg->g) : std::nullopt;
     return scattering;
-}
-
-// A scene without light, in which a fog shows the distance that each pixel sees.
-std::string fog_sdl(const Rig& rig,
-                    const Parts& parts,
-                    const PlannedWavelength& wavelength,
-                    const SceneOptions& options,
-                    double fog) {
-    const std::string version = "#version 3.7;\n";
-    std::string sdl = scene_sdl(rig, parts, kFogFrame, {&wavelength, 1}, options);
-    return sdl.insert(sdl.find(version) + version.size(),
-                      fmt::format("#declare Aphotic_Fog = {};\n", sdl_number(fog)));
 }
 
 Parts parts_of(const Rig& rig,
@@ -552,9 +540,12 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
             add_frames(fmt::format("{}", m + 1), m);
         if (options.user_scene) add_frames("surfaces", std::nullopt);
     }
+    // Without light, a fog shows the distance that each pixel sees.
     if (const double fog = fog_m(rig, options); fog > 0.0) {
-        scenes.push_back(
-            {.name = kFogFrame, .sdl = fog_sdl(rig, parts, wavelengths.front(), options, fog)});
+        SceneOptions in_fog = options;
+        in_fog.declarations += fmt::format("#declare Aphotic_Fog = {};\n", sdl_number(fog));
+        scenes.push_back({.name = kFogFrame,
+                          .sdl = scene_sdl(rig, parts, kFogFrame, wavelengths.first(1), in_fog)});
     }
     return scenes;
 }

@@ -59,7 +59,8 @@ struct SceneOptions {
     // light/veil.h.
     std::optional<int> veil_samples{};
     std::optional<PovrayVeil> povray_veil{};  // as planned
-    int antialias = 0;  // n x n rays per pixel, besides the one through its centre
+    int antialias = 0;           // n x n rays per pixel, besides the one through its centre
+    std::string declarations{};  // in POV-Ray's language, ahead of everything else
     // Lines for POV-Ray's INI file: keys that change its speed but no pixel, and a scene's clock.
     std::vector<std::string> ini_lines{};
 };

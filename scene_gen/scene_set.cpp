@@ -79,7 +79,7 @@ namespace {
 constexpr std::array kMethodNames{"fitted", "equal bands", "listed"};
 
 ManifestScene noted(const UserScene& scene, const LightFamily& family) {
-    ManifestScene note{.file = scene.file.string(),
+    ManifestScene note{.file = scene.file.path.string(),
                        .sha256 = scene.digest,
                        .materials = {},
                        .shortest_path_m = family.shortest_path_m,
@@ -106,11 +106,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     set.ini = render_ini(rig, plan.scene);
     if (rig.camera.lens) set.camera = rig.camera;
     const UserScene* own = plan.scene.user_scene.get();
-    if (own != nullptr) {
-        set.scene_file = own->file;
-        set.scene_files_digest = own->files_digest;
-        set.scene_writes_files = own->writes_files;
-    }
+    if (own != nullptr) set.user_scene = own->file;
     const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "") +
                                (rig.camera.lens ? lens_model_signature(*rig.camera.lens) : "");
     manifest.aphotic_version = APHOTIC_VERSION;
@@ -182,17 +178,17 @@ void require_place_in_settings(const std::string& path) {
 std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
     // Absolute, for a folder that does not exist yet.
     const std::filesystem::path here = std::filesystem::absolute(povray);
-    return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
+    return std::filesystem::relative(here, set.user_scene.path.parent_path()).generic_string();
 }
 
 // POV-Ray runs in the user's scene's folder, which contains its own includes and pictures.
 std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
-    if (set.scene_file.empty()) return set.ini + "Output_File_Name=frames/\n";
+    if (set.user_scene.path.empty()) return set.ini + "Output_File_Name=frames/\n";
     const std::string here = path_from_scene(povray, set);
     return fmt::format(
         "; To be run in the folder of {0}, with +I\"{1}/<frame>.pov\".\n"
         "{2}Library_Path=\"{1}\"\nOutput_File_Name=\"{1}/frames/\"\n",
-        set.scene_file.filename().string(),
+        set.user_scene.path.filename().string(),
         here,
         set.ini);
 }
@@ -201,7 +197,8 @@ std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
 
 void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     require_no_bracket(folder);
-    if (!set.scene_file.empty()) require_place_in_settings(path_from_scene(folder / "povray", set));
+    if (!set.user_scene.path.empty())
+        require_place_in_settings(path_from_scene(folder / "povray", set));
 }
 
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {

@@ -10,6 +10,7 @@
 #include "rig/rig.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/render_plan.h"
+#include "scene_gen/user_scene.h"
 #include "spectral/bands.h"
 #include "spectral/manifest.h"
 
@@ -28,9 +29,7 @@ struct SceneSet {
     std::vector<float> vignetting{};  // by pixel; empty without vignetting
     // The rig whose veil is written next to the frames; null: none, or POV-Ray renders it.
     std::optional<Rig> scattering{};
-    std::filesystem::path scene_file{};  // the user's, absolute; empty: the rig's floor
-    std::string scene_files_digest{};    // of the user's scene as planned
-    bool scene_writes_files = false;     // the user's scene
+    SceneFile user_scene{};  // as planned
 };
 
 // Throws InputError if a wavelength counts whose light is fainter than frames can represent.

@@ -164,14 +164,19 @@ bool opens_to_write(const fs::path& scene_file) {
     return std::ranges::any_of(files_of(scene_file), opens);
 }
 
-void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
-    if (digest_of_scene(scene_file) == files_digest) return;
+SceneFile scene_file_at(const fs::path& path) {
+    return {.path = fs::absolute(path).lexically_normal(),
+            .digest = digest_of_scene(path),
+            .writes_files = opens_to_write(path)};
+}
+
+void require_unchanged(const SceneFile& scene) {
+    if (digest_of_scene(scene.path) == scene.digest) return;
     throw RunError(
         "{}: this scene, or a file that it names, changed during the run; run the same command "
         "again with the current scene{}",
-        scene_file.string(),
-        opens_to_write(scene_file) ? ". Files that it writes itself must be the same each time"
-                                   : "");
+        scene.path.string(),
+        scene.writes_files ? ". Files that it writes itself must be the same each time" : "");
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

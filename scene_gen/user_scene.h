@@ -24,6 +24,13 @@
 
 namespace aphotic {
 
+// A user's scene on the disk: its file, and those that it names.
+struct SceneFile {
+    std::filesystem::path path{};  // absolute; empty: the rig's floor
+    std::string digest{};          // digest_of_scene
+    bool writes_files = false;     // and may read them: one POV-Ray at a time
+};
+
 struct UserScene {
     // The light of one strobe in one pixel.
     struct Lit {
@@ -31,13 +38,11 @@ struct UserScene {
         double path_m = 0.0;
     };
 
-    std::filesystem::path file;  // absolute
-    std::string files_digest;    // digest_of_scene, before the probe
-    // SHA-256 of files_digest and of the probe's pictures.
+    SceneFile file;  // as probed
+    // SHA-256 of the files' digest and of the probe's pictures.
     std::string digest;
     std::vector<NamedSpectrum> materials;  // with the scene's names for them
     PathRange paths;
-    bool writes_files = false;             // and may read them: one POV-Ray at a time
     std::vector<std::string> no_promise;   // reasons against a promise; empty: it has one
     std::vector<std::vector<Lit>> pixels;  // by pixel, the strobes that light it
 
@@ -69,9 +74,12 @@ inline constexpr double kProbeRoom = 1.05;
 // Whether it, or an existing file that it names, opens a file to write: #fopen ... write.
 [[nodiscard]] bool opens_to_write(const std::filesystem::path& scene_file);
 
+// As it is now.
+[[nodiscard]] SceneFile scene_file_at(const std::filesystem::path& path);
+
 // A scene edited during the probe or the render would give a mixture of two scenes: throws RunError
-// if the files no longer match files_digest.
-void require_unchanged(const std::filesystem::path& scene_file, const std::string& files_digest);
+// if the files no longer match the digest.
+void require_unchanged(const SceneFile& scene);
 
 // The rig with the scene's materials instead of its floor, plus white, for anything with a colour
 // or a highlight of POV-Ray's own.

@@ -187,9 +187,9 @@ constexpr const char* kWrites =
 
 TEST_F(SceneProbe, OneThatReadsWhatItWritesIsLookedAtOneAtATime) {
     const UserScene first = probe(kWrites);
-    EXPECT_TRUE(first.writes_files);
+    EXPECT_TRUE(first.file.writes_files);
     EXPECT_EQ(probe(kWrites).digest, first.digest) << "also where the file is there already";
-    EXPECT_FALSE(probe("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n").writes_files);
+    EXPECT_FALSE(probe("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n").file.writes_files);
 }
 
 TEST_F(SceneProbe, OneThatWritesSomethingElseEachTimeIsNamed) {
