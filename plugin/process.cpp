@@ -5,7 +5,6 @@
 #include "base/interruption.h"
 #include "plugin/life_signs.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -34,21 +33,6 @@ struct DieWithParent : bp::extend::handler {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
         ::setpgid(0, 0);
     }
-};
-
-// A separate file, instead of the log shared with stderr.
-struct OwnOutput : bp::extend::handler {
-    explicit OwnOutput(const std::filesystem::path& output) : file(output.string()) {}
-    template <typename Executor>
-    void on_exec_setup(Executor&) const {
-        if (file.empty()) return;
-        constexpr int kMode = 0666;
-        const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
-        if (descriptor < 0) return;
-        ::dup2(descriptor, STDOUT_FILENO);
-        ::close(descriptor);
-    }
-    std::string file;
 };
 
 void require_writable(const std::filesystem::path& file) {
@@ -98,8 +82,8 @@ struct Process::Child {
     void require_limits() {
         std::error_code ignored;
         const std::uintmax_t written = std::filesystem::file_size(request.log, ignored);
-        if (!ignored && written > request.most_log_bytes) {
-            stop("was stopped: it printed more than {} MiB", request.most_log_bytes >> 20U);
+        if (!ignored && written > kMostLogBytes) {
+            stop("was stopped: it printed more than {} MiB", kMostLogBytes >> 20U);
         }
         if (life_signs.are_gone(written)) {
             stop("was stopped: for {} s it neither printed anything nor used the processor",
@@ -127,7 +111,6 @@ Process::Process(const ProcessRequest& request) {
                        request.folder.string());
     }
     require_writable(request.log);
-    if (!request.output.empty()) require_writable(request.output);
     std::error_code error;
     bp::child child(bp::exe = request.executable.string(),
                     bp::args = request.arguments,
@@ -135,7 +118,6 @@ Process::Process(const ProcessRequest& request) {
                     environment_of(request),
                     bp::std_in<bp::null, (bp::std_out & bp::std_err)> request.log.string(),
                     DieWithParent{},
-                    OwnOutput(request.output),
                     error);
     if (error) {
         throw RunError("{}: cannot be started: {}", request.executable.string(), error.message());

@@ -6,7 +6,7 @@
 // with it. One limit: if we are killed by SIGKILL, the kernel kills the program for us, but not the
 // program's children.
 //
-// It may not end by itself: a program that prints more than its log's limit, or shows no sign of
+// It may not end by itself: a program that prints more than kMostLogBytes, or shows no sign of
 // life, is stopped.
 #pragma once
 
@@ -34,11 +34,9 @@ struct ProcessRequest {
     std::filesystem::path folder;                      // its working directory
     std::map<std::string, std::string> environment{};  // added to ours; "" removes a variable
     std::filesystem::path log;                         // takes its stdout and stderr
-    std::filesystem::path output{};                    // takes its stdout instead; empty: the log
     // The longest time in which it, with its children, may neither write to its log nor use the
     // processor.
     double stall_s = std::numeric_limits<double>::infinity();
-    std::uintmax_t most_log_bytes = kMostLogBytes;
 };
 
 struct ProcessEnd {

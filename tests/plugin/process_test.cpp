@@ -109,18 +109,6 @@ TEST(Process, WritesBothOutputsToTheLogInTheirOrder) {
     EXPECT_EQ(script.log(), "one\ntwo\nthree\n");
 }
 
-// What an earlier run said must not be taken for what this one says.
-TEST(Process, PartsItsOutputFromTheLogWhereAsked) {
-    Script script("echo out; echo err >&2; echo more");
-    script.request().output = script.file("answer");
-    write_file(script.file("answer"), "an older and longer answer\n");
-    EXPECT_TRUE(script.run().succeeded());
-    EXPECT_EQ(script.log(), "err\n");
-    EXPECT_EQ(read_text_file(script.file("answer")), "out\nmore\n");
-    script.request().output = script.file("no-such-folder") / "answer";
-    EXPECT_THROW(script.run(), RunError);
-}
-
 TEST(Process, StartsTheLogAfresh) {
     Script script("echo new");
     write_file(script.request().log, "an old log that is longer than the new one\n");
