@@ -9,7 +9,7 @@
 // in size, shadow no pixel.
 //
 // Behind a port a frame is rendered with the refractive indices of one wavelength
-// (frame_groups.h).
+// (render_plan.h).
 //
 // Parts that a rig lacks are not in its scenes (light_culling.h): no media in clear water, no port,
 // no cone of weight or power 0 or that lights nothing in view, no highlight of strength 0.
@@ -23,7 +23,6 @@
 #include "rig/geometry.h"
 #include "rig/rig.h"
 #include "scene_gen/exposure.h"
-#include "scene_gen/frame_groups.h"
 #include "scene_gen/povray_veil.h"
 #include "scene_gen/user_scene.h"
 #include "spectral/planned_wavelength.h"
@@ -35,6 +34,8 @@
 #include <vector>
 
 namespace aphotic {
+
+inline constexpr double kPixelShift = 0.25;
 
 struct FrameScene {
     std::string name;  // such as band_478_576_638nm

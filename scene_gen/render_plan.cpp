@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace aphotic {
@@ -210,19 +211,21 @@ std::vector<PlannedWavelength> in_frames(const Rig& rig,
                                          const SceneOptions& options) {
     const Rig lit = lit_rig(rig, options);
     std::vector<PlannedWavelength> wavelengths;
-    std::size_t frame = 0;
-    for (const FrameGroup& group :
-         frame_groups(rig, lambda_nm, options.wavelengths_per_frame, options.pixel_shift)) {
-        for (std::size_t channel = 0; channel < group.count; ++channel) {
-            const double nm = lambda_nm[group.first + channel];
-            wavelengths.push_back({.lambda_nm = nm,
-                                   .weight = {},
-                                   .frame = frame,
-                                   .channel = channel,
-                                   .index_nm = group.index_nm,
-                                   .light = source_light(lit, nm)});
+    std::size_t first = 0;  // of the frame
+    for (const double nm : lambda_nm) {
+        PlannedWavelength w{.lambda_nm = nm, .light = source_light(lit, nm)};
+        w.channel = wavelengths.size() - first;
+        const bool joins =
+            w.channel > 0 && w.channel < static_cast<std::size_t>(options.wavelengths_per_frame) &&
+            corner_shift_px(rig, wavelengths[first].lambda_nm, nm) <= options.pixel_shift;
+        if (!joins) {
+            first = wavelengths.size();
+            w.channel = 0;
         }
-        ++frame;
+        if (first > 0) w.frame = wavelengths.back().frame + (joins ? 0 : 1);
+        wavelengths.push_back(std::move(w));
+        for (PlannedWavelength& in_frame : std::span(wavelengths).subspan(first))
+            in_frame.index_nm = std::midpoint(wavelengths[first].lambda_nm, nm);
     }
     return wavelengths;
 }

@@ -70,7 +70,10 @@ struct RenderPlan {
 [[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
 
 // Distributes increasing wavelengths over frames, with the light of the rig or of its user's scene,
-// without weights yet.
+// without weights yet. Behind a dispersing port those of a frame must be nearly equal, since it has
+// one set of refractive indices: neighbours share one if the first and the last are shifted against
+// each other by no more than options.pixel_shift (light/dispersion.h), and it is rendered at the
+// wavelength halfway.
 [[nodiscard]] std::vector<PlannedWavelength> in_frames(const Rig& rig,
                                                        std::span<const double> lambda_nm,
                                                        const SceneOptions& options);

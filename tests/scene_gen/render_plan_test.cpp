@@ -73,6 +73,93 @@ void expect_order(const Rig& rig, const RenderPlan& plan) {
     EXPECT_EQ(plan.frames(), frame + 1);
 }
 
+// --- Frames ------------------------------------------------------------------------------------
+
+std::vector<double> even(double first_nm, double last_nm, int count) {
+    std::vector<double> lambda_nm;
+    for (int i = 0; i < count; ++i) {
+        lambda_nm.push_back(std::lerp(first_nm, last_nm, i / (count - 1.0)));
+    }
+    return lambda_nm;
+}
+
+using Counts = std::vector<std::size_t>;
+
+// The wavelengths in each frame.
+Counts counts_of(const std::vector<PlannedWavelength>& wavelengths) {
+    Counts counts;
+    for (const PlannedWavelength& w : wavelengths) {
+        counts.resize(w.frame + 1);
+        EXPECT_EQ(w.channel, counts.back()++);
+    }
+    return counts;
+}
+
+TEST(InFrames, EveryThreeShareWithoutAPort) {
+    const auto counts = [](int wavelengths, int per_frame, double bound) {
+        return counts_of(in_frames(habcam(),
+                                   even(400.0, 720.0, wavelengths),
+                                   {.wavelengths_per_frame = per_frame, .pixel_shift = bound}));
+    };
+    EXPECT_EQ(counts(8, 3, kPixelShift), (Counts{3, 3, 2}));
+    EXPECT_EQ(counts(8, 3, 0.0), (Counts{3, 3, 2}));
+    EXPECT_EQ(counts(5, 2, 0.0), (Counts{2, 2, 1}));
+    EXPECT_EQ(counts(3, 1, 9.0), (Counts{1, 1, 1}));
+}
+
+// All at random: the frames follow each other and hold every wavelength once; none is larger or
+// spread farther than allowed, and none ends before it must.
+TEST(InFrames, FramesAreAsLargeAsTheyMayBe) {
+    constexpr unsigned kSeedOfFrames = 20240612;
+    constexpr double kRounding = 1e-10;  // a few of a wavelength in nm
+    std::mt19937_64 random(kSeedOfFrames);
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    Rig rig = rig_of("port.toml");
+    int shared = 0;
+    int parted_by_bound = 0;
+    for (int n = 0; n < 200; ++n) {
+        rig.sled.altitude_m = between(0.5, 5.0);
+        rig.camera.focal_length_m = between(0.008, 0.03);
+        std::vector<double> lambda_nm;
+        for (double nm = between(400.0, 420.0); nm < 720.0; nm += between(0.1, 30.0)) {
+            lambda_nm.push_back(nm);
+        }
+        const int per_frame = 1 + n % 3;
+        const double bound = between(0.0, 1.0);
+        const auto wavelengths =
+            in_frames(rig, lambda_nm, {.wavelengths_per_frame = per_frame, .pixel_shift = bound});
+        ASSERT_EQ(wavelengths.size(), lambda_nm.size());
+        std::size_t next = 0;
+        for (const std::size_t count : counts_of(wavelengths)) {
+            ASSERT_GE(count, 1U);
+            ASSERT_LE(count, static_cast<std::size_t>(per_frame));
+            const std::size_t first = next;
+            next += count;
+            ASSERT_LE(next, lambda_nm.size());
+            const double first_nm = lambda_nm[first];
+            const double last_nm = lambda_nm[next - 1];
+            EXPECT_LE(corner_shift_px(rig, first_nm, last_nm), bound)
+                << first_nm << " to " << last_nm << " nm";
+            for (std::size_t j = first; j < next; ++j) {
+                EXPECT_EQ(wavelengths[j].lambda_nm, lambda_nm[j]);
+                EXPECT_NEAR(wavelengths[j].index_nm, 0.5 * (first_nm + last_nm), kRounding);
+            }
+            shared += count > 1 ? 1 : 0;
+            if (next == lambda_nm.size() || count == static_cast<std::size_t>(per_frame)) {
+                continue;
+            }
+            ++parted_by_bound;
+            EXPECT_GT(corner_shift_px(rig, first_nm, lambda_nm[next]), bound)
+                << "the frame from " << first_nm << " nm ends before " << lambda_nm[next] << " nm";
+        }
+        EXPECT_EQ(next, lambda_nm.size());
+    }
+    EXPECT_GT(shared, 100);
+    EXPECT_GT(parted_by_bound, 100);
+}
+
 // --- The promise, pixel by pixel ------------------------------------------------------- --------
 
 struct Pixel {
