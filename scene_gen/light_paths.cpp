@@ -3,6 +3,7 @@
 
 #include "light/dispersion.h"
 #include "light/floor_arrival.h"
+#include "light/signal_table.h"
 #include "rig/geometry.h"
 #include "rig/solid.h"
 
@@ -72,24 +73,15 @@ double change_between(const std::vector<double>& from, const std::vector<double>
     return all > 0.0 ? std::log1p(change / all) : 0.0;
 }
 
-// Only strobes of the same lamp spectrum can compensate for each other.
-std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
-    std::vector<std::size_t> lamps;
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        std::size_t first = 0;
-        while (!is_same_curve(rig.strobes[first].spectrum, rig.strobes[s].spectrum)) ++first;
-        lamps.push_back(first);
-    }
-    return lamps;
-}
-
 // The port's tilt: for each wavelength, the largest such change over the image.
 Spectrum port_tilt(const Rig& rig) {
     constexpr int kWavelengths = 25;
     constexpr double kBetween = 1.1;  // for what lies between the places
     const WavelengthRange range = rig.camera.range;
     const double middle_nm = std::midpoint(range.first_nm, range.last_nm);
-    const std::vector<std::size_t> lamps = lamps_by_strobe(rig);
+    // Only strobes of the same lamp spectrum can compensate for each other.
+    std::vector<std::size_t> lamps;
+    static_cast<void>(lamps_of(rig, lamps));
     std::vector<double> lambda_nm;
     std::vector<double> tilt;
     for (int j = 0; j < kWavelengths; ++j) {

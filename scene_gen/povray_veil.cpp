@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "light/dispersion.h"
 #include "light/veil.h"
+#include "scene_gen/render_plan.h"
 #include "spectral/phase_lobes.h"
 
 #include <algorithm>
@@ -209,13 +210,10 @@ PovrayVeil plan_povray_veil(const Rig& rig,
     const LightFamily of_veil = veil_family(rig, family, request.lamps);
 
     const QuadratureFitter fitter(rig.camera.sensor, of_veil, rig.camera.range);
-    std::vector<FrameLight> frames;
+    const std::vector<FrameLight> frames = frames_light(fitter, wavelengths);
     std::vector<WeightedWavelength> rule;
-    for (const PlannedWavelength& w : wavelengths) {
-        frames.push_back(fitter.frame_at(w.lambda_nm));
-        if (of_veil.tilt) frames.back().tilt = of_veil.tilt->at(w.index_nm);
+    for (const PlannedWavelength& w : wavelengths)
         rule.push_back({.lambda_nm = w.lambda_nm, .weight = w.weight});
-    }
     FittedRule fitted = request.fits_weights ? fitter.fit(frames, request.frame_error)
                                              : FittedRule{.wavelengths = rule,
                                                           .quality = fitter.judge(rule, frames)};
