@@ -23,6 +23,7 @@
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <chrono>
 #include <cmath>
@@ -398,12 +399,7 @@ int run(int surveys, int images, std::uint64_t first) {
 }  // namespace
 }  // namespace aphotic::fit_bench
 
-#include <malloc.h>
 int main(int argc, char** argv) {
-    mallopt(M_MMAP_THRESHOLD, 1 << 30);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-    mallopt(M_MMAP_THRESHOLD, 1 << 30);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     if (argc < 2) {

@@ -11,8 +11,9 @@
 #include "base/error.h"
 #include "base/npy_file.h"
 #include "base/upper_median.h"
+#include "bench/survey/picture_sheet.h"
 #include "image/any_image.h"
-#include "image/exr.h"
+#include "image/output_images.h"
 #include "survey/relief/depth_map.h"
 
 #include <fmt/format.h>
@@ -31,8 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kRgb{"R", "G", "B"};
-
 struct Options {
     fs::path masks;
     std::vector<std::string> corrections;  // NAME=DIR
@@ -42,17 +41,6 @@ struct Options {
     fs::path picture;
     std::string show;
 };
-
-struct Image {
-    int width_px = 0;
-    int height_px = 0;
-    std::vector<float> planes{};
-};
-
-Image read(const fs::path& file) {
-    ExrReader exr(file);
-    return {.width_px = exr.width_px(), .height_px = exr.height_px(), .planes = exr.planes(kRgb)};
-}
 
 std::vector<fs::path> images_in(const fs::path& folder) {
     std::vector<fs::path> files;
@@ -85,10 +73,10 @@ std::array<double, 3> medians_of(const fs::path& folder, const Options& options)
     for (std::size_t c = 0; c < medians.size(); ++c) {
         std::vector<float> all;
         for (const fs::path& file : images_in(folder)) {
-            const Image image = read(file);
+            const CameraImage image = read_signals(file);
             const std::vector<float> mask = mask_of(options, file);
             for (std::size_t i = 0; i < mask.size(); ++i)
-                if (mask[i] == 0.0F) all.push_back(image.planes[c * mask.size() + i]);
+                if (mask[i] == 0.0F) all.push_back(image.samples[c * mask.size() + i]);
         }
         medians[c] = upper_median(all);
     }
@@ -100,13 +88,13 @@ void judge(const std::string& name, const fs::path& folder, const Options& optio
     std::array<double, 3> squares{};
     double pixels = 0.0;
     for (const fs::path& file : images_in(folder)) {
-        const Image image = read(file);
+        const CameraImage image = read_signals(file);
         const std::vector<float> mask = mask_of(options, file);
         for (std::size_t i = 0; i < mask.size(); ++i) {
             if (mask[i] != 0.0F) continue;
             pixels += 1.0;
             for (std::size_t c = 0; c < squares.size(); ++c)
-                squares[c] += std::pow(image.planes[c * mask.size() + i] / medians[c] - 1.0, 2);
+                squares[c] += std::pow(image.samples[c * mask.size() + i] / medians[c] - 1.0, 2);
         }
     }
     constexpr double kPerCent = 100.0;
@@ -117,60 +105,26 @@ void judge(const std::string& name, const fs::path& folder, const Options& optio
 }
 
 // Medians become grey.
-void add_column(const fs::path& folder, const Options& options, std::vector<Image>& columns) {
-    constexpr double kGrey = 0.35;
-    constexpr double kGamma = 1.0 / 2.2;
-    Image image = read(folder / (options.show + ".exr"));
-    const std::array<double, 3> medians = medians_of(folder, options);
-    const std::size_t pixels = image.planes.size() / 3;
-    for (std::size_t i = 0; i < image.planes.size(); ++i) {
-        const double share = kGrey * image.planes[i] / medians.at(i / pixels);
-        image.planes[i] = static_cast<float>(std::pow(std::clamp(share, 0.0, 1.0), kGamma));
-    }
-    columns.push_back(std::move(image));
-}
-
-void write_picture(const std::vector<Image>& columns, const fs::path& file) {
-    constexpr int kGap_px = 4;
-    const int width_px = columns.front().width_px;
-    const int height_px = columns.front().height_px;
-    const auto whole_px =
-        static_cast<std::size_t>(columns.size()) * static_cast<std::size_t>(width_px + kGap_px) -
-        kGap_px;
-    std::vector<float> planes(3 * whole_px * static_cast<std::size_t>(height_px), 1.0F);
-    for (std::size_t n = 0; n < columns.size(); ++n) {
-        for (std::size_t row = 0; row < 3 * static_cast<std::size_t>(height_px); ++row) {
-            const auto from = columns[n].planes.begin() +
-                              static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(width_px));
-            std::copy(from,
-                      from + width_px,
-                      planes.begin() +
-                          static_cast<std::ptrdiff_t>(
-                              row * whole_px + n * static_cast<std::size_t>(width_px + kGap_px)));
-        }
-    }
-    write_any_image(file,
-                    {.width_px = static_cast<int>(whole_px),
-                     .height_px = height_px,
-                     .channels = kRgb,
-                     .planes = planes,
-                     .type = SampleType::Bits8,
-                     .compression = Compression::Small,
-                     .is_srgb = true});
+survey::SheetColumn column_of(const fs::path& folder, const Options& options) {
+    survey::SheetColumn column{.images = {read_signals(folder / (options.show + ".exr"))},
+                               .scale = medians_of(folder, options)};
+    for (double& scale : column.scale) scale = survey::kShownGrey / scale;
+    return column;
 }
 
 void run(const Options& options) {
     if (!options.noisy.empty()) write_noisy(options);
     if (options.corrections.empty()) return;
     fmt::print("| correction | R | G | B |\n|---|---|---|---|\n");
-    std::vector<Image> columns;
+    std::vector<survey::SheetColumn> columns;
     for (const std::string& words : options.corrections) {
         const std::size_t equals = words.find('=');
         if (equals == std::string::npos) throw InputError("found \"{}\"; allowed: NAME=DIR", words);
         judge(words.substr(0, equals), words.substr(equals + 1), options);
-        if (!options.picture.empty()) add_column(words.substr(equals + 1), options, columns);
+        if (!options.picture.empty())
+            columns.push_back(column_of(words.substr(equals + 1), options));
     }
-    if (!columns.empty()) write_picture(columns, options.picture);
+    if (!columns.empty()) survey::write_sheet(columns, options.picture);
 }
 
 }  // namespace

@@ -10,12 +10,11 @@
 // --picture FILE shows the images of --show side by side: a row for each of them, a column for each
 // NAME. Every column has one exposure and one white balance, by which the light tiles of its images
 // are grey on average, so differences within a column are those of the corrected images.
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "bench/survey/chart.h"
+#include "bench/survey/picture_sheet.h"
 #include "image/any_image.h"
 #include "image/output_images.h"
-#include "image/preview.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -155,10 +154,7 @@ void print_row(const std::string& name, const SurveyScore& score) {
                score.degrees);
 }
 
-// The light tiles of the shown images are grey of this level on average, sand somewhat lighter.
-constexpr double kShownGrey = 0.35;
-constexpr std::size_t kGap_px = 6;  // white, between pictures
-
+// The light tiles of the shown images are grey on average, sand somewhat lighter.
 std::array<double, kChannels> scale_of(const std::map<std::string, ChartScore>& scores,
                                        const std::vector<std::string>& show) {
     std::array<double, kChannels> scale{};
@@ -170,57 +166,16 @@ std::array<double, kChannels> scale_of(const std::map<std::string, ChartScore>& 
     return scale;
 }
 
-std::uint32_t shown(const CameraImage& image,
-                    const std::array<double, kChannels>& scale,
-                    std::size_t pixel) {
-    const std::size_t pixels = image.samples.size() / kChannels;
-    std::uint32_t colour = 0;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const double level = srgb_encoded(scale[c] * image.samples[c * pixels + pixel]);
-        colour = colour << 8U | static_cast<std::uint32_t>(std::lround(255.0 * level));
+void write_picture(const Options& options,
+                   const std::vector<Correction>& corrections,
+                   const std::vector<std::map<std::string, ChartScore>>& scores) {
+    std::vector<SheetColumn> columns;
+    for (std::size_t i = 0; i < corrections.size(); ++i) {
+        columns.push_back({.scale = scale_of(scores[i], options.show)});
+        for (const std::string& name : options.show)
+            columns.back().images.push_back(read_image(image_in(corrections[i].folder, name)));
     }
-    return colour;
-}
-
-// Draws one column of pictures at its place on the sheet.
-void put_column(const std::vector<CameraImage>& images,
-                const std::array<double, kChannels>& scale,
-                std::size_t column,
-                std::size_t sheet_width_px,
-                std::vector<std::uint32_t>& sheet) {
-    std::size_t top = 0;
-    for (const CameraImage& image : images) {
-        const auto width = static_cast<std::size_t>(image.width_px);
-        const auto height = static_cast<std::size_t>(image.height_px);
-        const std::size_t left = column * (width + kGap_px);
-        for (std::size_t i = 0; i < width * height; ++i) {
-            sheet.at((top + i / width) * sheet_width_px + left + i % width) =
-                shown(image, scale, i);
-        }
-        top += height + kGap_px;
-    }
-}
-
-void write_sheet(const Options& options,
-                 const std::vector<Correction>& corrections,
-                 const std::vector<std::map<std::string, ChartScore>>& scores) {
-    std::vector<std::uint32_t> sheet;
-    std::size_t width_px = 0;
-    for (std::size_t column = 0; column < corrections.size(); ++column) {
-        std::vector<CameraImage> images;
-        for (const std::string& name : options.show) {
-            images.push_back(read_image(image_in(corrections[column].folder, name)));
-        }
-        if (sheet.empty()) {
-            const auto width = static_cast<std::size_t>(images[0].width_px);
-            const auto height = static_cast<std::size_t>(images[0].height_px);
-            width_px = corrections.size() * (width + kGap_px) - kGap_px;
-            sheet.assign(width_px * (images.size() * (height + kGap_px) - kGap_px), 0xFFFFFFU);
-        }
-        put_column(images, scale_of(scores[column], options.show), column, width_px, sheet);
-    }
-    const auto height_px = static_cast<int>(sheet.size() / width_px);
-    write_text_file(options.picture, png_of(sheet, static_cast<int>(width_px), height_px));
+    write_sheet(columns, options.picture);
 }
 
 void judge(const Options& options) {
@@ -239,7 +194,7 @@ void judge(const Options& options) {
         scores.push_back(scores_of(correction, charts));
         json[correction.name] = json_of(total_of(scores.back()));
     }
-    if (!options.picture.empty()) write_sheet(options, corrections, scores);
+    if (!options.picture.empty()) write_picture(options, corrections, scores);
     if (options.json) {
         fmt::print("{}\n", json.dump(2));
         return;
