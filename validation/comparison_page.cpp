@@ -6,7 +6,6 @@
 #include "report/page.h"
 #include "report/svg.h"
 #include "validation/error_view.h"
-#include "validation/report_pictures.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

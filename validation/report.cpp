@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
-#include <stdexcept>
 
 namespace aphotic {
 namespace {
@@ -95,23 +94,7 @@ EdgeSummary ValidationReport::edges() const {
     return sum;
 }
 
-void ValidationReport::check() const {
-    const auto require = [](bool holds, const char* what) {
-        if (!holds) throw std::logic_error(std::string("ValidationReport: ") + what);
-    };
-    const auto samples = static_cast<std::size_t>(traced.width_px) *
-                         static_cast<std::size_t>(traced.height_px) * kChannels;
-    require(lambda_nm.size() == wavelengths.size(), "one lambda_nm a wavelength");
-    require(channels.size() == kChannels, "one comparison a channel");
-    require(samples > 0 && traced.samples.size() == samples, "samples of the traced image");
-    require(rendered.width_px == traced.width_px && rendered.height_px == traced.height_px &&
-                rendered.samples.size() == samples,
-            "both images of one size");
-    require(channel_errors.size() == samples, "one error a sample");
-}
-
 std::string validation_json(const ValidationReport& report) {
-    report.check();
     const Comparison& worst = report.worst();
     Json rig{{"title", report.rig.title}, {"sha256", report.rig.digest}};
     if (!report.scene_file.empty()) rig["scene"] = report.scene_file;

@@ -58,9 +58,6 @@ struct ValidationReport {
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
     [[nodiscard]] EdgeSummary edges() const;
-    // Throws std::logic_error, which is a bug, if the parts are inconsistent, since writing would
-    // read out of bounds.
-    void check() const;
 };
 
 // max_error / bound; 0 if both are 0, infinite if a sample is not finite.

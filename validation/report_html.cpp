@@ -9,7 +9,6 @@
 #include "spectral/refractive_index.h"
 #include "validation/error_view.h"
 #include "validation/report.h"
-#include "validation/report_pictures.h"
 
 #include <fmt/format.h>
 
@@ -341,7 +340,6 @@ PageList made_with(const ValidationReport& report) {
 }  // namespace
 
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
-    report.check();
     const Page page{
         .kind = "validation",
         .title = title_of(report) +

@@ -8,7 +8,7 @@
 #include "support/refusal.h"
 #include "support/small_report.h"
 #include "support/temp_folder.h"
-#include "validation/report_pictures.h"
+#include "validation/error_view.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <regex>
-#include <stdexcept>
 #include <utility>
 
 namespace aphotic::report_test {
@@ -87,17 +86,6 @@ TEST(Report, NamesWhatIsNotFiniteBeforeAnyError) {
     report.channels[0].max_error = 1e6;
     report.wavelengths[0].not_finite = 3;
     EXPECT_EQ(report.worst().name, "454 nm");
-}
-
-TEST(Report, WhosePartsDoNotFitIsOurMistake) {
-    const TempFolder folder;
-    ValidationReport report = small_report();
-    report.lambda_nm.pop_back();
-    EXPECT_THROW(write_validation_json(report, folder.path() / "a"), std::logic_error);
-    report = small_report();
-    report.rendered.samples.pop_back();
-    EXPECT_THROW(write_validation_html(report, folder.path() / "a"), std::logic_error);
-    EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 // validation.json

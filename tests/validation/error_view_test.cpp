@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "validation/report_pictures.h"
+#include "validation/error_view.h"
 
 #include "support/png.h"
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace aphotic::report_pictures_test {
+namespace aphotic::error_view_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -18,7 +18,10 @@ constexpr int kMostRed = (kColourSteps - 1) / 2;
 // a and b: all finite unless given.
 DecodedPng map_of(const std::vector<float>& errors, int width_px, double scale) {
     const std::vector<float> finite(errors.size(), 1.0F);
-    return decode_png(error_map(errors, finite, finite, width_px, scale).png);
+    return decode_png(
+        error_map({.errors = errors, .image = finite, .reference = finite, .width_px = width_px},
+                  scale)
+            .png);
 }
 
 TEST(BlockSide, KeepsPicturesUnderTheLimit) {
@@ -74,8 +77,15 @@ TEST(ErrorMap, ShowsSamplesThatAreNotFinite) {
     const std::vector<float> a{kNaN, 1.0F, 1.0F};
     const std::vector<float> b{1.0F, 1.0F, 1.0F};
     const std::vector<std::uint32_t> wanted{kNotFiniteColour, kEdgeColour, error_colour(0)};
-    EXPECT_EQ(decode_png(error_map(errors, a, b, 3, 1.0).png).pixels, wanted);
-    EXPECT_EQ(decode_png(error_map(errors, b, a, 3, 1.0).png).pixels, wanted) << "the reference's";
+    EXPECT_EQ(decode_png(
+                  error_map({.errors = errors, .image = a, .reference = b, .width_px = 3}, 1.0).png)
+                  .pixels,
+              wanted);
+    EXPECT_EQ(decode_png(
+                  error_map({.errors = errors, .image = b, .reference = a, .width_px = 3}, 1.0).png)
+                  .pixels,
+              wanted)
+        << "the reference's";
 }
 
 // The one large error of a block must not be averaged away, nor hidden by an edge beside it.
@@ -102,4 +112,4 @@ TEST(DataUri, IsBase64) {
 }
 
 }  // namespace
-}  // namespace aphotic::report_pictures_test
+}  // namespace aphotic::error_view_test
