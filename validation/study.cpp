@@ -14,7 +14,6 @@
 #include "spectral/integrator.h"
 #include "spectral/sensor.h"
 #include "validation/comparison.h"
-#include "validation/traced_images.h"
 #include "validation/tracer.h"
 #include "validation/validation.h"
 
@@ -109,8 +108,8 @@ StudyReference study_reference(Study& study,
     }
     make_folder(folder);
     const auto start = Clock::now();
-    const std::vector<double> signals =
-        trace_signals(tracer, [&](double share) { hands.progress("tracing", share); });
+    const std::vector<double> signals = tracer.rows(
+        0, rig.camera.height_px, [&](double share) { hands.progress("tracing", share); });
     study.trace_s = seconds_since(start);
     OutputImages images(
         folder,

@@ -31,26 +31,4 @@ CameraImage write_traced_images(const Tracer& tracer,
     return images.finish();
 }
 
-// By rows, to report progress.
-std::vector<double> trace_signals(const Tracer& tracer,
-                                  const std::function<void(double)>& progress) {
-    constexpr int kRows = 32;
-    const Camera& camera = tracer.rig().camera;
-    const auto width = static_cast<std::size_t>(camera.width_px);
-    const std::size_t pixels = width * static_cast<std::size_t>(camera.height_px);
-    std::vector<double> signals(kChannels * pixels);
-    for (int row = 0; row < camera.height_px; row += kRows) {
-        const int rows = std::min(kRows, camera.height_px - row);
-        const std::vector<double> block = tracer.rows(row, rows);
-        const std::size_t plane = block.size() / kChannels;
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const std::size_t at = c * pixels + static_cast<std::size_t>(row) * width;
-            std::ranges::copy(std::span(block).subspan(c * plane, plane),
-                              signals.begin() + static_cast<std::ptrdiff_t>(at));
-        }
-        progress(static_cast<double>(row + rows) / camera.height_px);
-    }
-    return signals;
-}
-
 }  // namespace aphotic

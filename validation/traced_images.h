@@ -12,7 +12,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace aphotic {
 
@@ -23,9 +22,5 @@ namespace aphotic {
                                               const std::string& version,
                                               const std::optional<ManifestModel>& model,
                                               const std::function<void(double)>& progress);
-
-// The planes R, G, B of a tracer for signals only.
-[[nodiscard]] std::vector<double> trace_signals(const Tracer& tracer,
-                                                const std::function<void(double)>& progress);
 
 }  // namespace aphotic

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace aphotic {
 
@@ -226,27 +227,28 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
         }
     }
     const double middle_nm = 0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm);
-    Index index{.glass = 1.0, .water = 1.0};
-    if (rig_.camera.port) {
-        index = {
-            .glass = rig_.camera.port->glass.index(middle_nm),
-            .water = seawater_index(middle_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
-    }
+    const Index index = index_at(middle_nm);
     std::vector<Vector3d> places_m;  // possible places of lamps
     for (const Strobe& strobe : rig_.strobes) {
         for (const auto& [x, y] : kCornersAndMiddle) {
             if (x == 0.0 || strobe.emitter) places_m.push_back(place_on_emitter(strobe, x, y));
         }
     }
+    // The distance from the point where a ray enters the water to the nearest lamp.
+    double nearest_m = std::numeric_limits<double>::infinity();
     const auto take_in = [&](double column, double row) {
         View view;
-        if (!look(column, row, index, view)) return false;
+        const std::optional<WideVector> in_air = sight(column, row);
+        if (!in_air) return false;
+        const bool sees = look_along(*in_air, index, view);
         for (const Vector3d& place_m : places_m) {
+            nearest_m = std::min(nearest_m, (view.ray.origin_m - place_m).norm());
+            if (!sees) continue;
             const double path_m = view.distance_m + (view.point_m - place_m).norm();
             family.shortest_path_m = std::min(family.shortest_path_m, path_m / kRoom);
             family.longest_path_m = std::max(family.longest_path_m, path_m * kRoom);
         }
-        return true;
+        return sees;
     };
     bool is_all_floor = true;
     for (int j = 0; j <= kSteps; ++j) {
@@ -268,36 +270,14 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                          family,
                          rig_.camera.range,
                          kSpectralError,
-                         veil_in_view(family, is_all_floor));
-}
-
-// The distance from the point where a ray enters the water to the nearest lamp.
-double Tracer::nearest_lamp_m() const {
-    constexpr int kSteps = 16;
-    const Index index = index_at(0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm));
-    double nearest_m = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < (kSteps + 1) * (kSteps + 1); ++k) {
-        const int across = k % (kSteps + 1);
-        const int down = k / (kSteps + 1);
-        const auto in_air = sight(rig_.camera.width_px * (across / double{kSteps}),
-                                  rig_.camera.height_px * (down / double{kSteps}));
-        if (!in_air) continue;
-        View view;
-        view.is_clear = true;                                 // objects do not matter here
-        static_cast<void>(look_along(*in_air, index, view));  // nor whether there is floor
-        for (const Strobe& strobe : rig_.strobes) {
-            for (const auto& [x, y] : kCornersAndMiddle) {
-                const Vector3d place_m = place_on_emitter(strobe, x, y);
-                nearest_m = std::min(nearest_m, (view.ray.origin_m - place_m).norm());
-            }
-        }
-    }
-    return nearest_m;
+                         veil_in_view(family, nearest_m, is_all_floor));
 }
 
 // Paths from the lamp nearest to any ray's entry into the water, up to the floor light's longest
 // path, or to the range of light if the image sees the horizon.
-VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) const {
+VeilLights Tracer::veil_in_view(const LightFamily& family,
+                                double nearest_m,
+                                bool is_all_floor) const {
     constexpr double kRoom = 1.05;
     constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
     VeilLights veil;
@@ -306,7 +286,6 @@ VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) co
         for (std::size_t i = 0; i < water_.phases().size(); ++i)
             veil.sources.push_back({strobe.spectrum, rig_.water.scatterers[i].scattering_per_m});
     }
-    const double nearest_m = nearest_lamp_m();
     double least_per_m = std::numeric_limits<double>::infinity();
     for (const double nm : union_of_knots(rig_.water.curves(), rig_.camera.range))
         least_per_m = std::min(least_per_m, water_.loss_per_m(nm));
@@ -766,35 +745,23 @@ bool Tracer::is_on_edge(std::size_t pixel,
 }
 
 std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within_px) const {
-    const std::array<Index, 3> indices = indices_over(range);
-    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
-    const auto height = static_cast<std::size_t>(rig_.camera.height_px);
-    std::vector<unsigned char> marks(width * height);
-    for_each(height, [&](std::size_t row) {
-        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-            marks[i] = is_on_edge(i, range, indices, within_px) ? 1 : 0;
-        }
-    });
-    return marks;
+    return on_edges_of(pixels_of(0, rig_.camera.height_px), range, within_px);
 }
 
 std::vector<unsigned char> Tracer::on_edges_of(std::span<const std::size_t> which,
-                                               WavelengthRange range) const {
+                                               WavelengthRange range,
+                                               double within_px) const {
     const std::array<Index, 3> indices = indices_over(range);
     std::vector<unsigned char> marks(which.size());
-    for_each(which.size(),
-             [&](std::size_t i) { marks[i] = is_on_edge(which[i], range, indices, 0.0) ? 1 : 0; });
+    parallel_for(
+        which.size(), static_cast<std::size_t>(options_.threads), [&](std::size_t i, std::size_t) {
+            marks[i] = is_on_edge(which[i], range, indices, within_px) ? 1 : 0;
+        });
     return marks;
 }
 
 std::size_t Tracer::planes() const {
     return (options_.signals ? kChannels : 0U) + options_.planes_nm.size();
-}
-
-void Tracer::for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
-    parallel_for(count,
-                 static_cast<std::size_t>(options_.threads),
-                 [&](std::size_t i, std::size_t) { work(i); });
 }
 
 void Tracer::write_planes(const ArrayXd& radiance, double* sample, std::size_t stride) const {
@@ -805,29 +772,35 @@ void Tracer::write_planes(const ArrayXd& radiance, double* sample, std::size_t s
     for (Eigen::Index j = grid; j < radiance.size(); ++j, sample += stride) *sample = radiance(j);
 }
 
-std::vector<double> Tracer::rows(int first_row, int count) const {
+std::vector<std::size_t> Tracer::pixels_of(int first_row, int count) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
-    const std::size_t plane = width * static_cast<std::size_t>(count);
-    std::vector<double> samples(planes() * plane);
-    for_each(static_cast<std::size_t>(count), [&](std::size_t row) {
-        ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
-        for (std::size_t column = 0; column < width; ++column) {
-            trace_pixel(static_cast<int>(column), first_row + static_cast<int>(row), radiance);
-            write_planes(radiance, samples.data() + row * width + column, plane);
-        }
-    });
-    return samples;
+    std::vector<std::size_t> which(width * static_cast<std::size_t>(count));
+    std::iota(which.begin(), which.end(), width * static_cast<std::size_t>(first_row));
+    return which;
 }
 
-std::vector<double> Tracer::pixels(std::span<const std::size_t> which) const {
+std::vector<double> Tracer::rows(int first_row,
+                                 int count,
+                                 const std::function<void(double)>& progress) const {
+    return pixels(pixels_of(first_row, count), progress);
+}
+
+std::vector<double> Tracer::pixels(std::span<const std::size_t> which,
+                                   const std::function<void(double)>& progress) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
+    const auto count = static_cast<double>(which.size());
     std::vector<double> samples(planes() * which.size());
-    for_each(which.size(), [&](std::size_t i) {
-        ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
-        trace_pixel(
-            static_cast<int>(which[i] % width), static_cast<int>(which[i] / width), radiance);
-        write_planes(radiance, samples.data() + i, which.size());
-    });
+    parallel_for(which.size(),
+                 static_cast<std::size_t>(options_.threads),
+                 [&](std::size_t i, std::size_t thread) {
+                     ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
+                     trace_pixel(static_cast<int>(which[i] % width),
+                                 static_cast<int>(which[i] / width),
+                                 radiance);
+                     write_planes(radiance, samples.data() + i, which.size());
+                     if (progress && thread == 0) progress(static_cast<double>(i + 1) / count);
+                 });
+    if (progress) progress(1.0);
     return samples;
 }
 

@@ -101,10 +101,14 @@ class Tracer {
 
     // The planes of these rows, one after another: R, G, B if requested, then one per wavelength.
     // Memory is these planes and one spectrum per thread, whatever the grid.
-    [[nodiscard]] std::vector<double> rows(int first_row, int count) const;
+    // progress: called by the caller's thread with the share of the pixels; may be empty.
+    [[nodiscard]] std::vector<double> rows(int first_row,
+                                           int count,
+                                           const std::function<void(double)>& progress = {}) const;
 
     // The same for these pixels only, numbered row by row: the planes one after another.
-    [[nodiscard]] std::vector<double> pixels(std::span<const std::size_t> which) const;
+    [[nodiscard]] std::vector<double> pixels(
+        std::span<const std::size_t> which, const std::function<void(double)>& progress = {}) const;
 
     // The lamps of the strobe's emitter.
     [[nodiscard]] EmitterLamps lamps(std::size_t strobe) const { return grids_[strobe]; }
@@ -128,7 +132,8 @@ class Tracer {
                                                       double within_px = 0.0) const;
     // The same for these pixels only.
     [[nodiscard]] std::vector<unsigned char> on_edges_of(std::span<const std::size_t> which,
-                                                         WavelengthRange range) const;
+                                                         WavelengthRange range,
+                                                         double within_px = 0.0) const;
 
     // The ray of an image point at a wavelength, up to what it sees; empty if it sees nothing.
     [[nodiscard]] std::optional<VeilRay> ray(double column, double row, double lambda_nm) const;
@@ -193,8 +198,10 @@ class Tracer {
     [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
-    [[nodiscard]] double nearest_lamp_m() const;
-    [[nodiscard]] VeilLights veil_in_view(const LightFamily& family, bool is_all_floor) const;
+    // nearest_m: from where any ray enters the water to the nearest lamp.
+    [[nodiscard]] VeilLights veil_in_view(const LightFamily& family,
+                                          double nearest_m,
+                                          bool is_all_floor) const;
     // The height over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
     // The direction of an image point in air, with z = 1; empty where the lens has no image.
@@ -206,7 +213,8 @@ class Tracer {
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
     void trace_sight(int column, int row, const WideVector& in_air, Eigen::ArrayXd& radiance) const;
-    void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
+    // The numbers of all pixels of these rows.
+    [[nodiscard]] std::vector<std::size_t> pixels_of(int first_row, int count) const;
     // Writes a sample to every plane, `stride` apart.
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
     [[nodiscard]] bool is_on_edge(std::size_t pixel,

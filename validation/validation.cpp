@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/validation.h"
 
-#include "validation/traced_images.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -146,7 +144,7 @@ void compare_signals(const Rig& rig,
     const TraceOptions options{.signals = true, .planes_nm = {}, .threads = threads};
     const Tracer tracer(rig, options);
     report.grid_size = tracer.grid_size();
-    std::vector<double> traced = trace_signals(tracer, [&](double share) {
+    std::vector<double> traced = tracer.rows(0, rig.camera.height_px, [&](double share) {
         if (progress) progress(kShareOfSignals * share);
     });
     report.traced = {.width_px = rig.camera.width_px,
