@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <variant>
 
 namespace aphotic {
@@ -66,6 +67,20 @@ BeamTable with_steep_lines(const BeamTable& table) {
     return steep;
 }
 
+double least_step(const std::vector<double>& angles_rad) {
+    double least = std::numbers::pi;
+    for (std::size_t i = 1; i < angles_rad.size(); ++i)
+        least = std::min(least, angles_rad[i] - angles_rad[i - 1]);
+    return least;
+}
+
+// A soft edge is even in the cosine.
+double half_lit_rad(const Cone& cone) {
+    if (cone.edge_rad == 0.0) return cone.half_angle_rad;
+    return std::acos(std::midpoint(std::cos(cone.half_angle_rad - cone.edge_rad),
+                                   std::cos(cone.half_angle_rad)));
+}
+
 }  // namespace
 
 std::vector<Crease> steep_creases(const Beam& beam, const BeamFrame& frame) {
@@ -108,6 +123,25 @@ bool crosses(const Crease& crease, const std::array<Eigen::Vector3d, 3>& towards
     const double room = kOff * (std::abs(bend) + std::abs(slope));
     return std::min({middle, first, last, extreme}) <= room &&
            std::max({middle, first, last, extreme}) >= -room;
+}
+
+double narrowest_rad(const Beam& beam) {
+    double narrowest = std::numbers::pi;
+    for (const Cone& cone : beam.cones) {
+        narrowest = std::min({narrowest, 2.0 * half_lit_rad(cone), 2.0 / std::sqrt(cone.exponent)});
+    }
+    const bool is_steep = !steep_creases(beam, frame_about(Eigen::Vector3d::UnitZ())).empty();
+    if (const auto* table = std::get_if<BeamTable>(&beam.pattern); table != nullptr && is_steep) {
+        narrowest = std::min({narrowest,
+                              2.0 * least_step(table->vertical_rad),
+                              2.0 * least_step(table->horizontal_rad)});
+    }
+    if (const auto* optics = std::get_if<BeamOptics>(&beam.pattern)) {
+        narrowest = std::min(narrowest,
+                             2.0 * std::atan(0.5 * std::min(optics->along_m, optics->across_m) /
+                                             optics->distance_m));
+    }
+    return narrowest;
 }
 
 }  // namespace aphotic

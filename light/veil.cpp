@@ -2,13 +2,10 @@
 #include "light/veil.h"
 
 #include <Eigen/Geometry>
-#include <boost/math/special_functions/legendre.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <numbers>
@@ -61,14 +58,17 @@ double least_loss_in_view_per_m(const Rig& rig) {
 }
 
 // The lamps of an emitter, by Gauss-Legendre's rule.
-template <class Rule, class Lamps>
-void add_lamps_of(const Strobe& strobe, const BeamFrame& frame, const Rule& rule, Lamps& lamps) {
-    for (std::size_t i = 0; i < rule.points.size(); ++i) {
-        for (std::size_t j = 0; j < rule.points.size(); ++j) {
+template <class Lamps>
+void add_lamps_of(const Strobe& strobe,
+                  const BeamFrame& frame,
+                  const std::vector<GaussNode>& rule,
+                  Lamps& lamps) {
+    for (const GaussNode& i : rule) {
+        for (const GaussNode& j : rule) {
             lamps.push_back({strobe.position_m +
-                                 (rule.points[i] - 0.5) * strobe.emitter->across_m * frame.across +
-                                 (rule.points[j] - 0.5) * strobe.emitter->along_m * frame.along,
-                             rule.weights[i] * rule.weights[j]});
+                                 (i.at - 0.5) * strobe.emitter->across_m * frame.across +
+                                 (j.at - 0.5) * strobe.emitter->along_m * frame.along,
+                             i.weight * j.weight});
         }
     }
 }
@@ -145,28 +145,12 @@ void VeilNodes::clear() {
 
 Veil::Veil(const Rig& rig, unsigned points)
     : rig_(std::make_shared<const Rig>(rig)), points_(points) {
-    for (unsigned n = 0; n <= points; ++n) {
-        Rule rule;
-        if (n > 0) {
-            const int order = static_cast<int>(n);
-            for (const double zero : boost::math::legendre_p_zeros<double>(order)) {
-                const double slope = boost::math::legendre_p_prime(order, zero);
-                const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
-                for (const double sign : {-1.0, 1.0}) {
-                    if (zero == 0.0 && sign > 0.0) continue;
-                    rule.points.push_back(0.5 + 0.5 * sign * zero);
-                    rule.weights.push_back(weight);
-                }
-            }
-        }
-        rules_.push_back(std::move(rule));
-    }
+    for (unsigned n = 0; n <= points; ++n) rules_.push_back(gauss_rule(n));
     constexpr unsigned kEmitterSide = 3;
     const unsigned side =
         std::min(points, std::max(kEmitterSide, points * kEmitterSide / kVeilPoints));
     for (std::size_t s = 0; s < rig_->strobes.size(); ++s) {
         const Strobe& strobe = rig_->strobes[s];
-        lights_.push_back(light_of(strobe, strobe.beam, side));
         for (const Beam& part : parts_of(strobe.beam)) {
             if (is_dark(part)) continue;
             parts_.push_back(light_of(strobe, part, side));
@@ -201,12 +185,11 @@ void Veil::add_kink_panels() {
         const double width = kinks_rad_[k + 1] - from;
         KinkPanel panel{
             .room_rad = std::min({kVeilPanelRad, kPoleRad - kinks_rad_[k + 1], from + kPoleRad})};
-        const Rule& rule = rule_for(width, panel.room_rad);
-        for (std::size_t n = 0; width <= panel.room_rad && n < rule.points.size(); ++n) {
-            const double phi = from + width * rule.points[n];
-            panel.points.push_back({.cosine = std::cos(phi),
-                                    .sine = std::sin(phi),
-                                    .weight = width * rule.weights[n]});
+        for (const GaussNode& node : rule_for(width, panel.room_rad)) {
+            if (width > panel.room_rad) break;
+            const double phi = from + width * node.at;
+            panel.points.push_back(
+                {.cosine = std::cos(phi), .sine = std::sin(phi), .weight = width * node.weight});
             for (const Phase& phase : phases_) panel.phases.push_back(phase.at(phi + kPoleRad));
         }
         panels_.push_back(std::move(panel));
@@ -218,7 +201,7 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
     Light light{.beam = beam,
                 .frame = frame,
                 .creases = creases_of(beam, frame),
-                .cones = {},
+                .cone = std::nullopt,
                 .pieces = {},
                 .lamps = {},
                 .widest_panel_rad =
@@ -233,7 +216,8 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
         for (TablePiece& piece : light.pieces)
             for (double& c : piece.c) c *= beam.per_flux;
     }
-    if (!beam.window) light.cones = cone_lights(beam);
+    if (const auto cones = cone_lights(beam); !beam.window && !cones.empty())
+        light.cone = cones.front();
     for (const Cone& cone : beam.cones)
         light.ends_in_a_power |= cone.half_angle_rad >= kPoleRad && !is_whole(cone.exponent);
     if (strobe.emitter)
@@ -257,28 +241,14 @@ double Veil::Phase::at(double psi_rad) const {
     return (c * d * (3.0 * a * y[1] - b * y[0]) + a * b * (c * y[3] - 3.0 * d * y[2])) / 6.0;
 }
 
-const Veil::Rule& Veil::rule_for(double width, double room) const {
+const std::vector<GaussNode>& Veil::rule_for(double width, double room) const {
     return rules_[points_for(rules_.size() - 1, width, room)];
 }
 
-void Veil::nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const {
-    find_nodes(lights_[strobe], ray, length_m, nodes);
-}
-
-void Veil::nodes_of_part(std::size_t part,
-                         const WaterRay& ray,
-                         double length_m,
-                         VeilNodes& nodes) const {
-    find_nodes(parts_[part], ray, length_m, nodes);
-}
-
-void Veil::find_nodes(const Light& light,
-                      const WaterRay& ray,
-                      double length_m,
-                      VeilNodes& nodes) const {
+void Veil::nodes(std::size_t part, const WaterRay& ray, double length_m, VeilNodes& nodes) const {
     nodes.clear();
     nodes.weight.resize(phases_.size());
-    for (const Lamp& lamp : light.lamps) add_lamp(light, lamp, ray, length_m, nodes);
+    for (const Lamp& lamp : parts_[part].lamps) add_lamp(parts_[part], lamp, ray, length_m, nodes);
 }
 
 void Veil::add_lamp(const Light& light,
@@ -351,7 +321,7 @@ class Veil::Shine {
           k_u_(light.frame.axis.dot(view.along)),
           seen_(towards(std::cos(middle_rad), std::sin(middle_rad))),
           cos_seen_(light.frame.axis.dot(seen_)),
-          is_of_cones_(!light.cones.empty() && light.cones.size() <= kMostCones) {
+          is_lit_(light.cone && cos_seen_ > light.cone->edge_cosine) {
         if (!light.pieces.empty()) {
             const double theta_rad = std::acos(std::clamp(cos_seen_, -1.0, 1.0));
             const auto after =
@@ -361,13 +331,10 @@ class Veil::Shine {
             if (after != light.pieces.begin() && theta_rad < (after - 1)->last_rad)
                 piece_ = &*(after - 1);
         }
-        for (std::size_t i = 0; is_of_cones_ && i < light.cones.size(); ++i) {
-            if (cos_seen_ > light.cones[i].edge_cosine) lit_ |= std::uint32_t{1} << i;
-        }
     }
 
     [[nodiscard]] bool is_dark() const {
-        if (is_of_cones_) return lit_ == 0;
+        if (light.cone) return !is_lit_;
         if (!light.pieces.empty()) return piece_ == nullptr || piece_->c == kNothing;
         return intensity_towards(light.beam, light.frame, seen_) == 0.0;
     }
@@ -377,22 +344,15 @@ class Veil::Shine {
             const double cos_theta = std::clamp(cosine * k_e_ + sine * k_u_, -1.0, 1.0);
             return std::max(0.0, piece_->at(std::acos(cos_theta)));
         }
-        if (!is_of_cones_)
+        if (!light.cone)
             return continued_intensity(light.beam, light.frame, towards(cosine, sine), seen_);
         const double cos_theta = std::max(0.0, cosine * k_e_ + sine * k_u_);
-        double sum = 0.0;
-        for (std::uint32_t left = lit_; left != 0; left &= left - 1) {
-            const ConeLight& cone = light.cones[static_cast<std::size_t>(std::countr_zero(left))];
-            double I = cone.on_axis *
-                       (cone.exponent == 1.0 ? cos_theta : std::pow(cos_theta, cone.exponent));
-            if (cos_seen_ < cone.full_cosine) {
-                const double t =
-                    (cos_theta - cone.edge_cosine) / (cone.full_cosine - cone.edge_cosine);
-                I *= t * t * (3.0 - 2.0 * t);
-            }
-            sum += I;
-        }
-        return sum;
+        const ConeLight& cone = *light.cone;
+        const double I =
+            cone.on_axis * (cone.exponent == 1.0 ? cos_theta : std::pow(cos_theta, cone.exponent));
+        if (cos_seen_ >= cone.full_cosine) return I;
+        const double t = (cos_theta - cone.edge_cosine) / (cone.full_cosine - cone.edge_cosine);
+        return I * t * t * (3.0 - 2.0 * t);
     }
 
     // phase_of: by scatterer.
@@ -405,7 +365,6 @@ class Veil::Shine {
     }
 
   private:
-    static constexpr std::size_t kMostCones = 32;
     static constexpr std::array<double, 4> kNothing{};
     [[nodiscard]] Vector3d towards(double cosine, double sine) const {
         return cosine * view.towards + sine * view.along;
@@ -414,8 +373,7 @@ class Veil::Shine {
     double k_u_;
     Vector3d seen_;
     double cos_seen_;
-    bool is_of_cones_;
-    std::uint32_t lit_ = 0;  // which cones shine here, one bit each
+    bool is_lit_;  // by its cone
     const TablePiece* piece_ = nullptr;
 };
 
@@ -463,18 +421,17 @@ void Veil::add_panels(const Shine& shine, double from, double to, VeilNodes& nod
             width *= 0.5;
         }
         const bool is_last = width >= (to - start) * (1.0 - 1e-9);
-        const Rule& rule = rule_for(width, room);
         const double middle = start + 0.5 * width;
         const double cos_middle = std::cos(middle);
         const double sin_middle = std::sin(middle);
-        for (std::size_t n = 0; n < rule.points.size(); ++n) {
-            const double off = width * (rule.points[n] - 0.5);
+        for (const GaussNode& node : rule_for(width, room)) {
+            const double off = width * (node.at - 0.5);
             const auto [cos_off, sin_off] = near_zero(off);
             const double psi = middle + off + kPoleRad;
             shine.add(
                 {.cosine = cos_middle * cos_off - sin_middle * sin_off,
                  .sine = sin_middle * cos_off + cos_middle * sin_off,
-                 .weight = width * rule.weights[n]},
+                 .weight = width * node.weight},
                 [&](std::size_t i) { return phases_[i].at(psi); },
                 nodes);
         }
@@ -487,8 +444,9 @@ double Veil::radiance(const WaterRay& ray, double length_m, double lambda_nm) co
     const double loss_per_m = rig.water.attenuation_per_m(lambda_nm);
     double sum = 0.0;
     VeilNodes found;
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        nodes(s, ray, length_m, found);
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+        const Strobe& strobe = rig.strobes[strobes_[part]];
+        nodes(part, ray, length_m, found);
         double light = 0.0;
         for (std::size_t i = 0; i < found.weight.size(); ++i) {
             double of_scatterer = 0.0;
@@ -496,7 +454,7 @@ double Veil::radiance(const WaterRay& ray, double length_m, double lambda_nm) co
                 of_scatterer += found.weight[i][n] * std::exp(-loss_per_m * found.path_m[n]);
             light += rig.water.scattering_per_m(i, lambda_nm) * of_scatterer;
         }
-        sum += rig.strobes[s].power * rig.strobes[s].spectrum.at(lambda_nm) * light;
+        sum += strobe.power * strobe.spectrum.at(lambda_nm) * light;
     }
     return sum;
 }

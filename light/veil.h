@@ -37,6 +37,7 @@
 // Shadows of objects in the veil are omitted.
 #pragma once
 
+#include "base/gauss_rule.h"
 #include "rig/beam/beam_crease.h"
 #include "rig/beam/table_pieces.h"
 #include "rig/geometry.h"
@@ -62,7 +63,7 @@ inline constexpr double kVeilBeamOff = 1e-4;
 // Light attenuated below e^-kVeilDepth is omitted.
 inline constexpr double kVeilDepth = 40.0;
 
-// The contribution of one strobe of power 1: A = Phi sum_n sum_i b_i weight[i][n] exp(-K
+// The contribution of a part of a strobe of power 1: A = Phi sum_n sum_i b_i weight[i][n] exp(-K
 // path_m[n]).
 struct VeilNodes {
     std::vector<double> path_m;                 // t + d
@@ -78,14 +79,9 @@ class Veil {
     explicit Veil(const Rig& rig, unsigned points = kVeilPoints);
 
     // Over the whole length of the ray, which may be infinite; replaces the nodes. Thread-safe.
-    void nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
-
-    // The same for a part: each cone of a beam is one, and so is any other beam. Where one part has
-    // an edge, the others are smooth.
-    void nodes_of_part(std::size_t part,
-                       const WaterRay& ray,
-                       double length_m,
-                       VeilNodes& nodes) const;
+    // Each cone of a beam is a part, and so is any other beam: where one part has an edge, the
+    // others are smooth.
+    void nodes(std::size_t part, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
     [[nodiscard]] const std::vector<std::size_t>& strobe_of_part() const { return strobes_; }
 
     // A of all strobes at one wavelength, powers included.
@@ -100,7 +96,7 @@ class Veil {
         Beam beam;
         BeamFrame frame;
         std::vector<Crease> creases;
-        std::vector<ConeLight> cones;    // of a beam without pattern and window
+        std::optional<ConeLight> cone;   // of a beam without pattern and window
         std::vector<TablePiece> pieces;  // of a round table without a window, of a flux of 1
         std::vector<Lamp> lamps;
         double widest_panel_rad;
@@ -115,10 +111,6 @@ class Veil {
         [[nodiscard]] double at(double psi_rad) const;
     };
     struct View;  // of one lamp from one ray
-    struct Rule {
-        std::vector<double> points;  // on 0 to 1
-        std::vector<double> weights;
-    };
     struct Point {
         double cosine;  // of phi
         double sine;
@@ -136,10 +128,6 @@ class Veil {
     [[nodiscard]] Light light_of(const Strobe& strobe,
                                  const Beam& beam,
                                  unsigned emitter_side) const;
-    void find_nodes(const Light& light,
-                    const WaterRay& ray,
-                    double length_m,
-                    VeilNodes& nodes) const;
     void add_lamp(const Light& light,
                   const Lamp& lamp,
                   const WaterRay& ray,
@@ -154,18 +142,17 @@ class Veil {
     void add_panels(const Shine& shine, double from, double to, VeilNodes& nodes) const;
     void add_known(const Shine& shine, const KinkPanel& panel, VeilNodes& nodes) const;
     void add_kink_panels();
-    [[nodiscard]] const Rule& rule_for(double width, double room) const;
+    [[nodiscard]] const std::vector<GaussNode>& rule_for(double width, double room) const;
 
     std::shared_ptr<const Rig> rig_;
     unsigned points_;
-    std::vector<Light> lights_;  // by strobe
     std::vector<Light> parts_;
-    std::vector<std::size_t> strobes_;  // by part
-    std::vector<Phase> phases_;         // by scatterer
-    std::vector<double> kinks_rad_;     // of all phase functions, as phi, ascending
-    std::vector<KinkPanel> panels_;     // by the kink where they begin
-    double longest_m_ = 0.0;            // path beyond which no light remains
-    std::vector<Rule> rules_;           // by number of points
+    std::vector<std::size_t> strobes_;           // by part
+    std::vector<Phase> phases_;                  // by scatterer
+    std::vector<double> kinks_rad_;              // of all phase functions, as phi, ascending
+    std::vector<KinkPanel> panels_;              // by the kink where they begin
+    double longest_m_ = 0.0;                     // path beyond which no light remains
+    std::vector<std::vector<GaussNode>> rules_;  // by number of points
 };
 
 // The difference between kVeilPoints and twice as many, relative to the veil, or to kDimVeilShare

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/veil_map.h"
 
-#include "light/beam_width.h"
 #include "light/dispersion.h"
 #include "light/signal_table.h"
+#include "light/steep_crease.h"
 #include "light/tile_cone.h"
 #include "rig/geometry.h"
 #include "spectral/light_family.h"
@@ -148,9 +148,9 @@ VeilMap::Signal VeilMap::at(const PlaceRays& rays,
                             std::optional<double> length_m) const {
     Signal sum{};
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
-        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-            veil_.nodes(s, water_ray(rays[j]), length_m.value_or(to_floor_m(rays[j])), nodes);
-            add(nodes, s, j, sum);
+        for (std::size_t part = 0; part < veil_.strobe_of_part().size(); ++part) {
+            veil_.nodes(part, water_ray(rays[j]), length_m.value_or(to_floor_m(rays[j])), nodes);
+            add(nodes, veil_.strobe_of_part()[part], j, sum);
         }
     }
     return sum;
@@ -239,7 +239,7 @@ class VeilTiles : public TileLight {
         for (std::size_t j = 0; j < map_.index_nodes_nm_.size(); ++j) {
             const FloorRay& ray = place.rays[j];
             for (const std::size_t part : parts) {
-                map_.veil_.nodes_of_part(part, water_ray(ray), to_floor_m(ray), nodes_);
+                map_.veil_.nodes(part, water_ray(ray), to_floor_m(ray), nodes_);
                 map_.add(nodes_, map_.veil_.strobe_of_part()[part], j, found.signals);
             }
         }

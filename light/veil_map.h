@@ -20,7 +20,7 @@
 // relative to the signal, floor's light and veil, and if its last degrees are small, too
 // (tile_fit.h). So that no light is missed between a tile's places, neither the planes of lamp and
 // sights nor the directions from the lamp to their ends turn over it by more than twice the width
-// of the narrowest (beam_width.h); near the lamp, planes turn about it.
+// of the narrowest (steep_crease.h); near the lamp, planes turn about it.
 //
 // Behind a port the veil is that of a few rays, interpolated over the water's index
 // (light/index_nodes.h).

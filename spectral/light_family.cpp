@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/light_family.h"
 
-#include <boost/math/special_functions/legendre.hpp>
+#include "base/gauss_rule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,34 +12,6 @@ namespace aphotic {
 namespace {
 
 using Signals = std::array<double, kChannels>;
-
-struct Node {
-    double x;       // in [0, 1]
-    double weight;  // their sum is 1
-};
-
-std::vector<Node> gauss_legendre(unsigned points) {
-    const int order = static_cast<int>(points);
-    std::vector<Node> nodes;
-    for (const double zero : boost::math::legendre_p_zeros<double>(order)) {
-        const double slope = boost::math::legendre_p_prime(order, zero);
-        const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
-        nodes.push_back({.x = 0.5 * (1.0 + zero), .weight = weight});
-        // Boost lists only the zeros that are not negative; the rule is symmetric.
-        if (zero != 0.0) nodes.push_back({.x = 0.5 * (1.0 - zero), .weight = weight});
-    }
-    std::ranges::sort(nodes, {}, &Node::x);
-    return nodes;
-}
-
-const std::vector<std::vector<Node>>& gauss_legendre_rules() {
-    static const auto kRules = [] {
-        std::vector<std::vector<Node>> rules{{}};
-        for (unsigned n = 1; n <= kExactPoints; ++n) rules.push_back(gauss_legendre(n));
-        return rules;
-    }();
-    return kRules;
-}
 
 // One member of the family: a source and a path.
 struct Member {
@@ -95,8 +67,8 @@ std::vector<WeightedWavelength> nodes_between(const Sensor& sensor,
                                               unsigned points) {
     std::vector<WeightedWavelength> nodes;
     const double width_nm = last_nm - first_nm;
-    for (const Node& node : gauss_legendre_rules()[points]) {
-        WeightedWavelength w{.lambda_nm = first_nm + node.x * width_nm};
+    for (const GaussNode& node : gauss_rule(points)) {
+        WeightedWavelength w{.lambda_nm = first_nm + node.at * width_nm};
         for (std::size_t c = 0; c < kChannels; ++c) {
             w.weight[c] =
                 node.weight * width_nm * sensor.response(static_cast<int>(c), w.lambda_nm);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/panel_quadrature.h"
 
-#include <boost/math/quadrature/gauss.hpp>
+#include "base/gauss_rule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,17 +61,12 @@ std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> table
 }
 
 std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> panels) {
-    using Gauss = boost::math::quadrature::gauss<double, kPanelPoints>;
     std::vector<QuadratureNode> nodes;
     for (const WavelengthRange& panel : panels) {
-        const double middle_nm = 0.5 * (panel.first_nm + panel.last_nm);
-        const double half_nm = 0.5 * (panel.last_nm - panel.first_nm);
-        // Boost lists only the abscissae that are not negative; the rule is symmetric.
-        for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
-            const double away_nm = half_nm * Gauss::abscissa()[k];
-            const double width_nm = half_nm * Gauss::weights()[k];
-            nodes.push_back({.lambda_nm = middle_nm - away_nm, .width_nm = width_nm});
-            nodes.push_back({.lambda_nm = middle_nm + away_nm, .width_nm = width_nm});
+        const double width_nm = panel.last_nm - panel.first_nm;
+        for (const GaussNode& node : gauss_rule(kPanelPoints)) {
+            nodes.push_back({.lambda_nm = panel.first_nm + width_nm * node.at,
+                             .width_nm = width_nm * node.weight});
         }
     }
     return nodes;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/full_spectrum.h"
 
+#include "base/gauss_rule.h"
 #include "validation/traced_water.h"
 
 #include <Eigen/Core>
-#include <boost/math/quadrature/gauss.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,38 +18,9 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-struct GaussPoint {
-    double at;  // from -1 to 1
-    double width;
-};
-
-template <unsigned kPoints>
-std::vector<GaussPoint> gauss_rule() {
-    using Gauss = boost::math::quadrature::gauss<double, kPoints>;
-    std::vector<GaussPoint> rule;
-    // Boost lists only the abscissae that are not negative; the rule is symmetric.
-    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
-        const double at = Gauss::abscissa()[k];
-        rule.push_back({.at = at, .width = Gauss::weights()[k]});
-        if (at != 0.0) rule.push_back({.at = -at, .width = Gauss::weights()[k]});
-    }
-    std::ranges::sort(rule, {}, &GaussPoint::at);
-    return rule;
-}
-
 // From no point, sufficient where no light is left, to ten; the last rule is the standard for the
 // others.
-const std::array<std::vector<GaussPoint>, 8>& gauss_rules() {
-    static const std::array<std::vector<GaussPoint>, 8> kRules{std::vector<GaussPoint>{},
-                                                               gauss_rule<1>(),
-                                                               gauss_rule<2>(),
-                                                               gauss_rule<3>(),
-                                                               gauss_rule<4>(),
-                                                               gauss_rule<5>(),
-                                                               gauss_rule<7>(),
-                                                               gauss_rule<10>()};
-    return kRules;
-}
+constexpr std::array<unsigned, 8> kRulePoints{0, 1, 2, 3, 4, 5, 7, 10};
 
 ArrayXd paths_between(double shortest_m, double longest_m) {
     if (!(shortest_m > 0.0)) return ArrayXd::Constant(1, longest_m);
@@ -109,15 +80,14 @@ class Signals {
     }
 
     [[nodiscard]] std::vector<WeightedWavelength> on(const WavelengthRange& panel,
-                                                     std::span<const GaussPoint> rule) const {
-        const double middle_nm = 0.5 * (panel.first_nm + panel.last_nm);
-        const double half_nm = 0.5 * (panel.last_nm - panel.first_nm);
+                                                     unsigned points) const {
+        const double width_nm = panel.last_nm - panel.first_nm;
         std::vector<WeightedWavelength> wavelengths;
-        for (const GaussPoint& point : rule) {
-            WeightedWavelength w{.lambda_nm = middle_nm + half_nm * point.at, .weight = {}};
+        for (const GaussNode& node : gauss_rule(points)) {
+            WeightedWavelength w{.lambda_nm = panel.first_nm + width_nm * node.at, .weight = {}};
             for (std::size_t c = 0; c < kChannels; ++c) {
                 w.weight[c] =
-                    half_nm * point.width * sensor_.response(static_cast<int>(c), w.lambda_nm);
+                    width_nm * node.weight * sensor_.response(static_cast<int>(c), w.lambda_nm);
             }
             wavelengths.push_back(w);
         }
@@ -179,7 +149,7 @@ std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
     const Signals signals(sensor, water, least_loss_per_m, groups);
     std::vector<MatrixXd> exact;
     for (const WavelengthRange& panel : panels) {
-        exact.push_back(signals.of(signals.on(panel, gauss_rules().back())));
+        exact.push_back(signals.of(signals.on(panel, kRulePoints.back())));
     }
     MatrixXd total = MatrixXd::Zero(exact.front().rows(), exact.front().cols());
     for (const MatrixXd& of_panel : exact) total += of_panel;
@@ -188,14 +158,14 @@ std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
     std::vector<WeightedWavelength> spectrum;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         std::vector<WeightedWavelength> wavelengths;
-        for (const std::vector<GaussPoint>& rule : gauss_rules()) {
-            wavelengths = signals.on(panels[i], rule);
+        for (const unsigned points : kRulePoints) {
+            wavelengths = signals.on(panels[i], points);
             const MatrixXd off = (signals.of(wavelengths) - exact[i]).cwiseAbs();
             if ((off.array() <= allowed.array()).all()) break;
         }
         spectrum.insert(spectrum.end(), wavelengths.begin(), wavelengths.end());
     }
-    if (spectrum.empty()) return signals.on(panels.front(), gauss_rules()[1]);  // no light at all
+    if (spectrum.empty()) return signals.on(panels.front(), 1);  // no light at all
     return spectrum;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/model_check.h"
 
+#include "base/gauss_rule.h"
 #include "base/parallel.h"
 #include "validation/traced_veil.h"
 #include "validation/tracer.h"
-
-#include <boost/math/quadrature/gauss.hpp>
 
 #include <atomic>
 #include <cmath>
@@ -44,30 +43,9 @@ Rig bare(Rig rig) {
     return rig;
 }
 
-// A place along the image's width or height, from 0 to 1, and its weight.
-struct Node {
-    double at = 0.0;
-    double weight = 0.0;
-
-    [[nodiscard]] std::size_t pixel_of(int pixels) const {
-        return static_cast<std::size_t>(at * pixels);
-    }
-};
-
-// Boost lists the non-negative half of its symmetric nodes, the middle first.
-template <int kNodes>
-std::array<Node, kNodes> gauss_nodes() {
-    static_assert(kNodes % 2 == 1);
-    using Rule = boost::math::quadrature::gauss<double, kNodes>;
-    std::array<Node, kNodes> nodes;
-    for (int n = 0; n < kNodes; ++n) {
-        const int from_middle = n - kNodes / 2;
-        const auto half = static_cast<std::size_t>(std::abs(from_middle));
-        const double side = from_middle < 0 ? -1.0 : 1.0;
-        nodes[static_cast<std::size_t>(n)] = {.at = 0.5 + 0.5 * side * Rule::abscissa()[half],
-                                              .weight = Rule::weights()[half]};
-    }
-    return nodes;
+// The pixel of a place along the image's width or height.
+std::size_t pixel_at(const GaussNode& place, int pixels) {
+    return static_cast<std::size_t>(place.at * pixels);
 }
 
 }  // namespace
@@ -96,8 +74,8 @@ ModelCheck check_model(const Rig& rig,
     const Rig floor = bare(rig);
     const TracedVeil veil(floor, TracedWater(floor.water));
     const auto width = static_cast<std::size_t>(floor.camera.width_px);
-    const auto across = gauss_nodes<kPlacesAcross>();
-    const auto down = gauss_nodes<kPlacesDown>();
+    const auto& across = gauss_rule(kPlacesAcross);
+    const auto& down = gauss_rule(kPlacesDown);
     for (int c = 0; c < kChannels; ++c) {
         const double nm = mean_wavelength_nm(floor, c);
         const Tracer tracer(floor, {.signals = false, .planes_nm = {nm}, .threads = 1});
@@ -107,10 +85,10 @@ ModelCheck check_model(const Rig& rig,
         std::atomic<std::size_t> done = 0;
         parallel_for(
             kPlaces, static_cast<std::size_t>(threads), [&](std::size_t i, std::size_t thread) {
-                const Node& u = across[i % kPlacesAcross];
-                const Node& v = down[i / kPlacesAcross];
-                const std::size_t column = u.pixel_of(floor.camera.width_px);
-                const std::size_t row = v.pixel_of(floor.camera.height_px);
+                const GaussNode& u = across[i % kPlacesAcross];
+                const GaussNode& v = down[i / kPlacesAcross];
+                const std::size_t column = pixel_at(u, floor.camera.width_px);
+                const std::size_t row = pixel_at(v, floor.camera.height_px);
                 ModelPlace at{.column = static_cast<double>(column) + 0.5,
                               .row = static_cast<double>(row) + 0.5,
                               .channel = static_cast<std::size_t>(c),

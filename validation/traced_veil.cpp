@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/traced_veil.h"
 
+#include "base/gauss_rule.h"
+
 #include <Eigen/Geometry>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -42,21 +44,6 @@ std::array<RulePoint, kPoints> make_rule() {
 const std::array<RulePoint, kPoints>& rule() {
     static const std::array<RulePoint, kPoints> kRule = make_rule();
     return kRule;
-}
-
-struct EmitterPoint {
-    double at;  // in shares of the side from its middle
-    double share;
-};
-
-std::vector<EmitterPoint> emitter_points() {
-    using Gauss = boost::math::quadrature::gauss<double, kVeilLamps>;
-    std::vector<EmitterPoint> points;
-    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
-        points.push_back({0.5 * Gauss::abscissa()[k], 0.5 * Gauss::weights()[k]});
-        points.push_back({-0.5 * Gauss::abscissa()[k], 0.5 * Gauss::weights()[k]});
-    }
-    return points;
 }
 
 }  // namespace
@@ -136,7 +123,7 @@ struct TracedVeil::Work {
 };
 
 TracedVeil::TracedVeil(const Rig& rig, const TracedWater& water) : water_(water) {
-    const std::vector<EmitterPoint> on_side = emitter_points();
+    const std::vector<GaussNode>& on_side = gauss_rule(kVeilLamps);
     for (const Strobe& strobe : rig.strobes) {
         Source source{.beam = TracedBeam(strobe.beam, strobe.axis),
                       .lamps = {},
@@ -146,12 +133,13 @@ TracedVeil::TracedVeil(const Rig& rig, const TracedWater& water) : water_(water)
             source.lamps.push_back({strobe.position_m, 1.0});
         } else {
             const StrobeSides sides = sides_about(strobe.axis);
-            for (const EmitterPoint& i : on_side) {
-                for (const EmitterPoint& j : on_side) {
-                    source.lamps.push_back({strobe.position_m +
-                                                i.at * strobe.emitter->across_m * sides.across +
-                                                j.at * strobe.emitter->along_m * sides.along,
-                                            i.share * j.share});
+            for (const GaussNode& i : on_side) {
+                for (const GaussNode& j : on_side) {
+                    source.lamps.push_back(
+                        {strobe.position_m +
+                             (i.at - 0.5) * strobe.emitter->across_m * sides.across +
+                             (j.at - 0.5) * strobe.emitter->along_m * sides.along,
+                         i.weight * j.weight});
                 }
             }
         }

@@ -447,9 +447,9 @@ ManifestVeil veil_by_points(const std::filesystem::path& folder,
                                               static_cast<double>(i / width) + 0.5,
                                               lambda_nm.front());
         std::vector<double> radiance(lambda_nm.size());
-        for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-            const Strobe& strobe = rig.strobes[s];
-            veil.nodes(s, ray, length_m, nodes);
+        for (std::size_t part = 0; part < veil.strobe_of_part().size(); ++part) {
+            const Strobe& strobe = rig.strobes[veil.strobe_of_part()[part]];
+            veil.nodes(part, ray, length_m, nodes);
             const Eigen::Vector3d lamp = strobe.position_m - ray.origin_m;
             std::vector<double> lost_m;
             for (const double path_m : nodes.path_m) {

@@ -59,9 +59,10 @@ std::array<double, kChannels> by_wavelengths(const Rig& rig, double column, doub
     const Veil veil(rig, 2 * kVeilPoints);
     const VeilSight sight = sight_of(rig, column, row, 0.5 * (range.first_nm + range.last_nm));
     std::array<double, kChannels> sum{};
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+    for (std::size_t part = 0; part < veil.strobe_of_part().size(); ++part) {
+        const Strobe& strobe = rig.strobes[veil.strobe_of_part()[part]];
         VeilNodes nodes;
-        veil.nodes(s, sight.ray, sight.length_m, nodes);
+        veil.nodes(part, sight.ray, sight.length_m, nodes);
         for (int k = 0; k <= kSteps; ++k) {
             const double nm = range.first_nm + k * step_nm;
             const double rule = (k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) / 3.0;
@@ -73,7 +74,7 @@ std::array<double, kChannels> by_wavelengths(const Rig& rig, double column, doub
                     left += nodes.weight[i][n] * std::exp(-loss_per_m * nodes.path_m[n]);
                 light += rig.water.scattering_per_m(i, nm) * left;
             }
-            light *= rig.strobes[s].power * rig.strobes[s].spectrum.at(nm) * rule * step_nm;
+            light *= strobe.power * strobe.spectrum.at(nm) * rule * step_nm;
             for (std::size_t c = 0; c < kChannels; ++c)
                 sum[c] += light * rig.camera.sensor.response(static_cast<int>(c), nm);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "light/beam_width.h"
+#include "light/steep_crease.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace aphotic::beam_width_test {
+namespace aphotic::steep_crease_test {
 namespace {
 
 using std::numbers::pi;
@@ -73,4 +73,4 @@ TEST(BeamWidth, OfAnImageIsThatOfItsShorterSide) {
 }
 
 }  // namespace
-}  // namespace aphotic::beam_width_test
+}  // namespace aphotic::steep_crease_test
