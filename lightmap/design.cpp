@@ -114,8 +114,8 @@ struct Candidate {
 };
 
 bool is_as_good(const LightFigures& a, const LightFigures& b) {
-    return a.evenness >= b.evenness && a.signal_to_noise >= b.signal_to_noise &&
-           a.coverage >= b.coverage;
+    return std::ranges::all_of(
+        kGoalFigures, [&](const GoalFigure& one) { return a.*one.figure >= b.*one.figure; });
 }
 
 // The Pareto-optimal designs among all that were seen.
@@ -136,30 +136,19 @@ class Archive {
 };
 
 double goal_of(DesignGoal goal, const LightFigures& figures) {
-    if (goal == DesignGoal::Signal) return figures.signal_to_noise;
-    return goal == DesignGoal::Coverage ? figures.coverage : figures.evenness;
+    return figures.*figure_of(goal).figure;
+}
+
+LightFigures times(LightFigures figures, double factor) {
+    for (const GoalFigure& one : kGoalFigures) figures.*one.figure *= factor;
+    return figures;
 }
 
 // The least that a design must have of each figure.
 LightFigures least_of(const DesignRequest& request, const LightFigures& start) {
-    LightFigures least{.evenness = request.keep * start.evenness,
-                       .coverage = request.keep * start.coverage,
-                       .signal_to_noise = request.keep * start.signal_to_noise};
-    if (request.goal == DesignGoal::Evenness) least.evenness = 0.0;
-    if (request.goal == DesignGoal::Coverage) least.coverage = 0.0;
-    if (request.goal == DesignGoal::Signal) least.signal_to_noise = 0.0;
+    LightFigures least = times(start, request.keep);
+    least.*figure_of(request.goal).figure = 0.0;
     return least;
-}
-
-LightFigures times(LightFigures figures, double factor) {
-    for (double* one : {&figures.evenness, &figures.coverage, &figures.signal_to_noise})
-        *one *= factor;
-    return figures;
-}
-
-bool has(const LightFigures& figures, const LightFigures& least) {
-    return figures.evenness >= least.evenness && figures.coverage >= least.coverage &&
-           figures.signal_to_noise >= least.signal_to_noise;
 }
 
 double log_missing(double figure, double least) {
@@ -262,33 +251,24 @@ class DesignSearch {
     std::uint64_t searches_ = 0;
 };
 
-// Judges designs as the user gets them.
-class DesignJudge {
-  public:
-    DesignJudge(const DesignSpace& space, const DesignRequest& request)
-        : space_(space), request_(request), poses_(grid_poses(request.envelope)) {}
-
-    [[nodiscard]] Design of(std::span<const double> point) const {
-        const RigText text = space_.text_at(point);
-        Design design{.toml = text.text(), .places = {}, .figures = {}};
-        const Rig rig = text.rig();
-        for (const Strobe& strobe : rig.strobes)
-            design.places.push_back({strobe.position_m, strobe.axis, strobe.power});
-        const Rig seen = with_longer_side(rig, kJudged_px);
-        const LightmapMaker maker(seen, paths_of(seen, poses_), {.error = kSearchError});
-        const std::vector<LightFigures> figures =
-            figures_of_poses(maker, poses_, request_.level, request_.threads);
-        design.figures = worst_of_all(figures);
-        for (std::size_t i = 0; i < poses_.size(); ++i)
-            design.poses.push_back({poses_[i], figures[i]});
-        return design;
-    }
-
-  private:
-    const DesignSpace& space_;
-    const DesignRequest& request_;
-    std::vector<Sled> poses_;
-};
+// As the user gets it.
+Design judged_at(std::span<const double> point,
+                 const DesignSpace& space,
+                 const DesignRequest& request) {
+    const RigText text = space.text_at(point);
+    const Rig rig = text.rig();
+    Design design{.toml = text.text(), .places = {}, .figures = {}};
+    for (const Strobe& strobe : rig.strobes)
+        design.places.push_back({strobe.position_m, strobe.axis, strobe.power});
+    const Rig seen = with_longer_side(rig, kJudged_px);
+    const std::vector<Sled> poses = grid_poses(request.envelope);
+    const LightmapMaker maker(seen, paths_of(seen, poses), {.error = kSearchError});
+    const std::vector<LightFigures> figures =
+        figures_of_poses(maker, poses, request.level, request.threads);
+    design.figures = worst_of_all(figures);
+    for (std::size_t i = 0; i < poses.size(); ++i) design.poses.push_back({poses[i], figures[i]});
+    return design;
+}
 
 // Those that keep the required figures, the best first. Some have margin, since the best have none
 // and may fail the judgement.
@@ -304,7 +284,7 @@ std::vector<Candidate> best_of(std::vector<Candidate> candidates,
         const LightFigures least = times(least_of(request, start), room);
         std::size_t taken = 0;
         for (std::size_t i = 0; i < candidates.size() && taken < kCandidatesOfRoom; ++i) {
-            if (!has(candidates[i].figures, least)) continue;
+            if (!is_as_good(candidates[i].figures, least)) continue;
             is_taken[i] = true;
             ++taken;
         }
@@ -407,8 +387,7 @@ DesignResult design(const RigText& text, const DesignRequest& request) {
     DesignSearch search(space, light, request);
     search.run();
 
-    const DesignJudge judge(space, request);
-    DesignResult result{.start = judge.of(space.start()), .best = {}};
+    DesignResult result{.start = judged_at(space.start(), space, request), .best = {}};
     result.best = result.start;
     result.evaluations = search.evaluations();
     result.numbers = space.size();
@@ -416,8 +395,8 @@ DesignResult design(const RigText& text, const DesignRequest& request) {
     std::size_t holding = 0;
     for (const Candidate& one : best_of(search.candidates(), request, search.start())) {
         if (holding == kFewHold) break;
-        Design design = judge.of(one.point);
-        if (!has(design.figures, least)) continue;
+        Design design = judged_at(one.point, space, request);
+        if (!is_as_good(design.figures, least)) continue;
         ++holding;
         if (goal_of(request.goal, design.figures) <= goal_of(request.goal, result.best.figures))
             continue;
@@ -427,7 +406,7 @@ DesignResult design(const RigText& text, const DesignRequest& request) {
     std::vector<Design> judged{result.best};
     const double least_coverage = request.keep * search.start().coverage;
     for (const Candidate& one : front_of(search.candidates(), least_coverage))
-        judged.push_back(judge.of(one.point));
+        judged.push_back(judged_at(one.point, space, request));
     for (const Design& one : judged) {
         const bool is_beaten = std::ranges::any_of(judged, [&](const Design& other) {
             return is_better_in_both(other.figures, one.figures);

@@ -34,6 +34,7 @@
 #include "rig/rig.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -61,6 +62,17 @@ struct Envelope {
 [[nodiscard]] std::vector<Sled> grid_poses(const Envelope& envelope);
 
 enum class DesignGoal { Evenness, Signal, Coverage };
+
+struct GoalFigure {
+    const char* word;
+    double LightFigures::*figure;
+};
+inline constexpr std::array<GoalFigure, 3> kGoalFigures{{{"evenness", &LightFigures::evenness},
+                                                         {"signal", &LightFigures::signal_to_noise},
+                                                         {"coverage", &LightFigures::coverage}}};
+[[nodiscard]] constexpr const GoalFigure& figure_of(DesignGoal goal) {
+    return kGoalFigures.at(static_cast<std::size_t>(goal));
+}
 
 struct DesignRequest {
     DesignFreedom freedom;

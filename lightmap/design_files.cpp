@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <string>
 
 namespace aphotic {
@@ -16,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using DesignJson = nlohmann::ordered_json;
-
-constexpr std::array kGoals{"evenness", "signal", "coverage"};
 
 DesignJson degrees(const Ends& ends_rad) {
     return {ends_rad[0] * kDegreesPerRadian, ends_rad[1] * kDegreesPerRadian};
@@ -65,7 +62,7 @@ DesignJson design_json(const Rig& rig, const DesignRequest& request, const Desig
                     {"altitude_m", request.envelope.altitude_m},
                     {"pitch_deg", degrees(request.envelope.pitch_rad)},
                     {"roll_deg", degrees(request.envelope.roll_rad)},
-                    {"goal", kGoals.at(static_cast<std::size_t>(request.goal))},
+                    {"goal", figure_of(request.goal).word},
                     {"keep", request.keep},
                     {"coverage_level", request.level},
                     {"seed", request.seed},

@@ -101,11 +101,7 @@ std::string steps_png(const Lightmap& map) {
 
 Lightmap shown_map(const Rig& rig, const Design& design, const Sled& sled) {
     Rig shown = with_longer_side(rig, kShown_px);
-    for (std::size_t s = 0; s < design.places.size(); ++s) {
-        shown.strobes[s].position_m = design.places[s].position_m;
-        shown.strobes[s].axis = design.places[s].axis;
-        shown.strobes[s].power = design.places[s].power;
-    }
+    for (std::size_t s = 0; s < design.places.size(); ++s) put(design.places[s], shown.strobes[s]);
     return LightmapMaker(shown, paths_of(shown, {sled}), {.error = 1e-3}).map(sled);
 }
 

@@ -112,13 +112,6 @@ void brighten(RigText& text, const std::string& strobe, double factor) {
     text.set(key, rounded_to_digits(power, DesignSpace::kDigitsOfPower));
 }
 
-Strobe placed(Strobe strobe, const StrobePlace& place) {
-    strobe.position_m = place.position_m;
-    strobe.axis = place.axis;
-    strobe.power = place.power;
-    return strobe;
-}
-
 }  // namespace
 
 DesignSpace::DesignSpace(const RigText& text, const DesignFreedom& freedom, std::vector<Sled> poses)
@@ -320,7 +313,8 @@ std::string DesignSpace::why_not(const std::vector<StrobePlace>& places) const {
     for (std::size_t s = 0; s < places.size(); ++s) {
         const Free& free = free_[s];
         if (!free.position && !free.aim && !free.tilt) continue;
-        const Strobe strobe = placed(rig_.strobes[s], places[s]);
+        Strobe strobe = rig_.strobes[s];
+        put(places[s], strobe);
         const bool is_aimed = is_aimed_[s] && !free.aim;
         const bool is_on_axis = strobe.position_m.head<2>().norm() == 0.0;
         if (is_aimed && is_on_axis && std::abs(strobe.axis.z()) < 1.0)

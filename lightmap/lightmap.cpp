@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "image/camera_image.h"
 #include "image/image_size.h"
-#include "light/beam_light.h"
 #include "light/dispersion.h"
 #include "light/floor_image.h"
 #include "rig/geometry.h"
@@ -17,14 +16,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
-#include <random>
 #include <span>
 #include <utility>
 
@@ -100,6 +97,12 @@ std::vector<float> signal_of(const Lightmap& map) {
     return signal;
 }
 
+void put(const StrobePlace& place, Strobe& strobe) {
+    strobe.position_m = place.position_m;
+    strobe.axis = place.axis;
+    strobe.power = place.power;
+}
+
 VeilShare veil_share_of(const Lightmap& map) {
     VeilShare share{};
     if (map.veil.empty()) return share;
@@ -172,12 +175,7 @@ void LightmapMaker::make_veil() {
 }
 
 void LightmapMaker::place(const std::vector<StrobePlace>& by_strobe) {
-    for (std::size_t s = 0; s < by_strobe.size(); ++s) {
-        Strobe& strobe = rig_.strobes[s];
-        strobe.position_m = by_strobe[s].position_m;
-        strobe.axis = by_strobe[s].axis;
-        strobe.power = by_strobe[s].power;
-    }
+    for (std::size_t s = 0; s < by_strobe.size(); ++s) put(by_strobe[s], rig_.strobes[s]);
     make_veil();
 }
 
@@ -227,36 +225,6 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
     }
     take_off_vignetting(first_row, count, map.samples);
     take_off_vignetting(first_row, count, map.veil);
-}
-
-std::vector<double> LightmapMaker::cones(const Sled& sled) const {
-    const FloorLight light(rig_, sled, table_, rays_);
-    // Whole numbers below 2^40, whose sums are exact and rarely coincide.
-    std::mt19937_64 engine(1);
-    constexpr std::uint64_t kShift = 24;
-    std::vector<BeamEdges> edges;
-    for (const Strobe& strobe : rig_.strobes) edges.emplace_back(strobe);
-    std::vector<std::vector<double>> numbers;  // by lamp and edge
-    for (const FloorLamp& lamp : light.lamps()) {
-        numbers.emplace_back(edges[lamp.strobe].count());
-        for (double& number : numbers.back()) number = static_cast<double>(engine() >> kShift);
-    }
-    std::vector<double> found;
-    found.reserve(size_of(rig_.camera.width_px) * size_of(rig_.camera.height_px));
-    for (int row = 0; row < rig_.camera.height_px; ++row) {
-        for (int column = 0; column < rig_.camera.width_px; ++column) {
-            const FloorRay ray = light.rays_at(column + 0.5, row + 0.5)[0];
-            double sum = 0.0;
-            for (std::size_t k = 0; ray.sees_floor() && k < light.lamps().size(); ++k) {
-                const FloorLamp& lamp = light.lamps()[k];
-                const Eigen::Vector3d way = towards(lamp.position_m, ray);
-                for (std::size_t e = 0; e < numbers[k].size(); ++e)
-                    if (edges[lamp.strobe].is_within(e, way)) sum += numbers[k][e];
-            }
-            found.push_back(sum);
-        }
-    }
-    return found;
 }
 
 }  // namespace aphotic

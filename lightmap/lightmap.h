@@ -81,6 +81,7 @@ struct StrobePlace {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector
     double power = 1.0;
 };
+void put(const StrobePlace& place, Strobe& strobe);
 
 class LightmapMaker {
   public:
@@ -97,10 +98,6 @@ class LightmapMaker {
     void map_into(const Sled& sled, Lightmap& map) const;
     // Some rows only.
     void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
-
-    // For each pixel a number that identifies the edges of lamps' beams that enclose it: where two
-    // maps have equal numbers, no edge lies between them.
-    [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
     // Moves, turns and dims the strobes for all later maps; their lamps and the tables stay.
     void place(const std::vector<StrobePlace>& by_strobe);

@@ -9,6 +9,7 @@
 #include "lightmap/lightmap.h"
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
+#include "support/cones_seen.h"
 #include "support/effort.h"
 
 #include <gtest/gtest.h>
@@ -255,7 +256,7 @@ TEST(BeamLight, MarksTheEdgesOfRimsAndWindows) {
     const auto expect_marks = [&](const Beam& beam, bool has_any) {
         strobe.beam = beam;
         const std::vector<std::uint8_t> mask = ConeEdges(rig).mask(rig.sled, 1);
-        const std::vector<double> numbers = LightmapMaker(rig, std::nullopt, {}).cones(rig.sled);
+        const std::vector<double> numbers = cones_seen(rig);
         const std::vector<double> lights = lights_of(rig);
         int steps = 0;
         for (std::size_t i = 0; i < lights.size(); ++i) {

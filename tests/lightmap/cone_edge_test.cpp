@@ -5,8 +5,8 @@
 #include "lightmap/cone_edge.h"
 
 #include "base/atomic_file.h"
-#include "lightmap/lightmap.h"
 #include "rig/file/rig_reader.h"
+#include "support/cones_seen.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(ConeEdge, MarksWhereTheMapsConesChange) {
     for (const double roll : {-7.0, 0.0, 11.0}) {
         Rig rig = tilted("habcam.toml");
         rig.sled.roll_rad = roll * kDegree;
-        const std::vector<double> cones = LightmapMaker(rig, std::nullopt, {}).cones(rig.sled);
+        const std::vector<double> cones = cones_seen(rig);
         const auto width = static_cast<std::size_t>(rig.camera.width_px);
         std::vector<std::uint8_t> wanted(cones.size());
         const auto compare = [&](std::size_t a, std::size_t b) {
