@@ -5,7 +5,8 @@
 // The image is divided into square tiles. The parts of a tile's light that may be smooth are
 // computed at the points of tile_fit.h and interpolated, if they are accurate at the places
 // between. The rest is passed to the tile's four quarters, and at kDirectPixels is computed pixel
-// by pixel. Tiles depend only on the image: neither threads nor the requested rows change a bit.
+// by pixel. Tiles depend only on the image, and are painted whole: neither threads nor the
+// requested rows change a bit.
 //
 // Users of this (floor_image.cpp, veil_map.cpp) supply a class, one object per thread, with
 //
@@ -74,7 +75,7 @@ struct TileLight {
     static void settle(const auto&... /*all*/) {}
 };
 
-// Rows of an image, planes one after another.
+// Rows of an image that are whole tiles, planes one after another.
 struct ImageRows {
     int width_px = 0;
     int height_px = 0;
@@ -83,16 +84,13 @@ struct ImageRows {
     float* samples = nullptr;
 };
 
-// The tiles that contain some of these rows, row by row.
+// Row by row.
 [[nodiscard]] std::vector<Tile> tiles_of(const ImageRows& rows, int tile_px);
 
 using TilePlane = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using TilePlaneMap = Eigen::Map<TilePlane, Eigen::Unaligned, Eigen::OuterStride<>>;
-[[nodiscard]] bool is_within(const Tile& tile, const ImageRows& rows);
 // A tile of an image's plane, set to 0.
 [[nodiscard]] TilePlaneMap plane_in(const ImageRows& rows, std::size_t plane, const Tile& tile);
-[[nodiscard]] TilePlaneMap plane_of(TilePlane& plane);
-void copy_rows(const std::vector<TilePlane>& planes, const Tile& tile, const ImageRows& rows);
 
 // A tile of the image's grid, and its pixels' sums so far.
 template <class Light>
@@ -101,17 +99,13 @@ class TilePainter {
     using Pieces = std::vector<typename Light::Piece>;
 
     TilePainter(Light& light, const Tile& whole, const ImageRows& rows)
-        : light_(light), whole_(whole), rows_(rows) {
-        if (!is_within(whole, rows))
-            own_.assign(light.planes(), TilePlane::Zero(whole.height, whole.width));
+        : light_(light), whole_(whole) {
         for (std::size_t c = 0; c < light.planes(); ++c)
-            planes_.push_back(own_.empty() ? plane_in(rows, c, whole) : plane_of(own_[c]));
+            planes_.push_back(plane_in(rows, c, whole));
     }
 
     void paint(const Tile& tile, const Pieces& pieces) {
-        const bool is_asked_for =
-            tile.row < rows_.first + rows_.count && tile.row + tile.height > rows_.first;
-        if (pieces.empty() || tile.width == 0 || tile.height == 0 || !is_asked_for) return;
+        if (pieces.empty() || tile.width == 0 || tile.height == 0) return;
         if (tile.is_direct()) {
             paint_directly(tile, light_.all_of(pieces));
             return;
@@ -125,8 +119,6 @@ class TilePainter {
             if (!one.is_right) light_.give_back(one.group, rest);
         for (const Tile& quarter : quarters(tile)) paint(quarter, rest);
     }
-
-    void copy_own_rows() const { copy_rows(own_, whole_, rows_); }
 
   private:
     using Nodes = std::vector<TileNodes>;
@@ -253,10 +245,8 @@ class TilePainter {
     }
 
     void paint_directly(const Tile& tile, const typename Light::Group& all) {
-        const int first = std::max(0, rows_.first - tile.row);
-        const int end = std::min(tile.height, rows_.first + rows_.count - tile.row);
         const auto width = static_cast<std::size_t>(tile.width);
-        for (int y = first; y < end; ++y) {
+        for (int y = 0; y < tile.height; ++y) {
             const auto at = [&](std::size_t x) {
                 return PixelPlace{static_cast<double>(x), static_cast<double>(y)};
             };
@@ -285,10 +275,8 @@ class TilePainter {
 
     Light& light_;
     Tile whole_;
-    ImageRows rows_;
-    std::vector<TilePlane> own_;        // of a tile that is only partly asked for
-    std::vector<TilePlaneMap> planes_;  // these, or the image's
-    PlaceSignals so_far_{};             // of the current pixel: zeroing it for each takes as long
+    std::vector<TilePlaneMap> planes_;
+    PlaceSignals so_far_{};  // of the current pixel: zeroing it for each takes as long
 };
 
 // All pieces, with a thread for each of these lights.
@@ -299,9 +287,7 @@ void paint_tiles(std::vector<Light>& by_thread,
                  const ImageRows& rows) {
     const std::vector<Tile> tiles = tiles_of(rows, tile_px);
     parallel_for(tiles.size(), by_thread.size(), [&](std::size_t k, std::size_t thread) {
-        TilePainter<Light> painter(by_thread[thread], tiles[k], rows);
-        painter.paint(tiles[k], pieces);
-        painter.copy_own_rows();
+        TilePainter<Light>(by_thread[thread], tiles[k], rows).paint(tiles[k], pieces);
     });
 }
 

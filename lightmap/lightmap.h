@@ -96,7 +96,7 @@ class LightmapMaker {
     [[nodiscard]] Lightmap map(const Sled& sled) const;
     // The same into an existing map: without allocation if it has the size.
     void map_into(const Sled& sled, Lightmap& map) const;
-    // Some rows only.
+    // Some rows only, of whole tiles: from a multiple of kVeilTile_px to another, or to the last.
     void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
 
     // Moves, turns and dims the strobes for all later maps; their lamps and the tables stay.

@@ -77,7 +77,7 @@ std::vector<Sled> sleds_at(const Rig& rig, const std::vector<double>& altitude_m
 }
 
 Fits fits_of(const Rig& rig, const AltitudeExport& request) {
-    constexpr int kRows = 32;  // of all altitudes at once
+    constexpr int kRows = kVeilTile_px;  // of all altitudes at once
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const auto height = static_cast<std::size_t>(rig.camera.height_px);
     const std::vector<Sled> sleds = sleds_at(rig, request.altitude_m);
