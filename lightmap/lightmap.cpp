@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/lightmap.h"
 
-#include "base/degrees.h"
 #include "base/error.h"
 #include "base/offered.h"
-#include "base/parallel.h"
-#include "image/camera_image.h"
 #include "image/image_size.h"
 #include "light/dispersion.h"
 #include "light/floor_image.h"
-#include "rig/geometry.h"
-#include "spectral/light_family.h"
+#include "rig/camera/vignetting.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
 #include <limits>
 #include <memory>
-#include <numbers>
-#include <numeric>
-#include <span>
-#include <utility>
 
 namespace aphotic {
 namespace {

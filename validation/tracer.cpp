@@ -518,12 +518,6 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
         radiance *= traced_vignetting(rig_.camera, column + 0.5, row + 0.5, *in_air);
 }
 
-std::array<Tracer::Index, 3> Tracer::indices_over(WavelengthRange range) const {
-    return {index_at(range.first_nm),
-            index_at(0.5 * (range.first_nm + range.last_nm)),
-            index_at(range.last_nm)};
-}
-
 bool Tracer::is_on_beam_edge(double column,
                              double row,
                              const std::array<Index, 3>& indices,
@@ -751,7 +745,9 @@ std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within
 std::vector<unsigned char> Tracer::on_edges_of(std::span<const std::size_t> which,
                                                WavelengthRange range,
                                                double within_px) const {
-    const std::array<Index, 3> indices = indices_over(range);
+    const std::array<Index, 3> indices{index_at(range.first_nm),
+                                       index_at(0.5 * (range.first_nm + range.last_nm)),
+                                       index_at(range.last_nm)};
     std::vector<unsigned char> marks(which.size());
     parallel_for(
         which.size(), static_cast<std::size_t>(options_.threads), [&](std::size_t i, std::size_t) {

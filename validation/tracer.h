@@ -219,7 +219,7 @@ class Tracer {
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
     [[nodiscard]] bool is_on_edge(std::size_t pixel,
                                   WavelengthRange range,
-                                  const std::array<Index, 3>& indices,
+                                  const std::array<Index, 3>& indices,  // at its start, middle, end
                                   double within_px) const;
 
     [[nodiscard]] bool is_blocked(const Lamp& lamp,
@@ -232,8 +232,6 @@ class Tracer {
     [[nodiscard]] bool is_on_steep_light(double column, double row, WavelengthRange range) const;
     [[nodiscard]] double edge_px() const;
     [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
-    // The indices at the range's start, middle and end.
-    [[nodiscard]] std::array<Index, 3> indices_over(WavelengthRange range) const;
     [[nodiscard]] bool is_on_beam_edge(double column,
                                        double row,
                                        const std::array<Index, 3>& indices,

@@ -176,10 +176,6 @@ void compare_signals(const Rig& rig,
     }
 }
 
-}  // namespace
-
-namespace {
-
 // If all surfaces are black, only the veil remains.
 VeilShare traced_veil_share(Rig rig, const CameraImage& traced) {
     VeilShare share{};
