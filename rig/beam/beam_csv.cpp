@@ -103,13 +103,6 @@ void unfold(PhotometricFile& photometry,
     set_turn(photometry.table, std::move(planes));
 }
 
-// A comment line in which no colon ends a keyword early.
-std::string comment(const PhotometricLabel& label) {
-    std::string keyword = label.keyword.empty() ? "other" : label.keyword;
-    std::ranges::replace(keyword, ':', ' ');
-    return fmt::format("# {}: {}\n", keyword, label.text);
-}
-
 }  // namespace
 
 PhotometricFile parse_beam_csv(const std::string& file_name, std::string_view text) {
@@ -142,8 +135,6 @@ PhotometricFile parse_beam_csv(const std::string& file_name, std::string_view te
         }
     }
     unfold(photometry, file_name, phis, std::move(planes));
-    for (const auto& [keyword, label] : table.metadata)
-        photometry.labels.push_back({keyword, label});
     return photometry;
 }
 
@@ -153,9 +144,7 @@ std::string beam_csv_text(const PhotometricFile& photometry, const std::string& 
         throw InputError("{}: found a table of type A or B; allowed in .csv: type C", file_name);
     }
     const bool is_round = table.horizontal_rad.size() == 1;
-    std::string text;
-    for (const PhotometricLabel& label : photometry.labels) text += comment(label);
-    text += fmt::format("{}\n", fmt::join(is_round ? kRoundColumns : kTurnColumns, ","));
+    std::string text = fmt::format("{}\n", fmt::join(is_round ? kRoundColumns : kTurnColumns, ","));
     std::vector<std::string> thetas;
     for (const double theta : table.vertical_rad) thetas.push_back(degrees_text(theta));
     for (std::size_t h = 0; h < table.horizontal_rad.size(); ++h) {

@@ -3,7 +3,6 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
-#include "base/printable.h"
 #include "rig/beam/photometric_text.h"
 
 #include <fmt/format.h>
@@ -79,10 +78,6 @@ class ValueLines {
     std::size_t line_ = 0;
 };
 
-void take_label(PhotometricFile& photometry, std::string_view keyword, std::string_view text) {
-    if (!text.empty()) photometry.labels.push_back({std::string(keyword), printable(text)});
-}
-
 // The stored planes: Mc1 - 1, counted from 0, and their number.
 struct StoredPlanes {
     std::size_t first = 0;
@@ -153,16 +148,15 @@ double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
                     "lm of it");
     }
     const FileNumber count = lines.number("the number of lamps");
-    photometry.is_absolute = count.value < 0.0;
     static_cast<void>(count_of(file,
                                {std::abs(count.value), count.line},
                                "the number of lamps, negative for absolute photometry",
                                1,
                                kMostLampsOfSet));
-    take_label(photometry, "LAMP", lines.next("the type of lamps"));
+    lines.skip(1, "the type of lamps");
     const FileNumber lumens = lines.number("the lamps' lumens");
     static_cast<void>(above_zero(file, lumens, "the lamps' lumens"));
-    if (!photometry.is_absolute) photometry.luminous_flux_lm = lumens.value;
+    if (count.value > 0.0) photometry.luminous_flux_lm = lumens.value;
     lines.skip(3, "colour, rendering and watts");
     return product_of_factors(file, lumens, factor) / 1000.0;
 }
@@ -219,30 +213,20 @@ std::string percent_text(double share) {
     return fmt::format("{:.4g}", 100.0 * share);
 }
 
-std::string text_labelled(const PhotometricFile& photometry, std::string_view keyword) {
-    const auto found = std::ranges::find(photometry.labels, keyword, &PhotometricLabel::keyword);
-    return found == photometry.labels.end() ? std::string() : found->text;
-}
-
 }  // namespace
 
 PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view bytes) {
     const std::string text = utf8_of(bytes);
     ValueLines lines(file_name, text);
     PhotometricFile photometry;
-    take_label(photometry, "MANUFAC", lines.next("the manufacturer"));
-    lines.skip(1, "the type");
+    lines.skip(2, "the manufacturer and the type");
     const std::size_t symmetry = lines.count("Isym, the symmetry", 0, 4);
     const std::size_t planes = next_plane_count(lines, symmetry);
     lines.skip(1, "the step of planes");
     const std::size_t angles =
         lines.count("Ng, the number of angles in a plane", 2, kMostTableNodes / planes);
     lines.skip(1, "the step of angles");
-    take_label(photometry, "TEST", lines.next("the report"));
-    take_label(photometry, "LUMINAIRE", lines.next("the name"));
-    take_label(photometry, "LUMCAT", lines.next("the number"));
-    lines.skip(1, "the file's name");
-    take_label(photometry, "ISSUEDATE", lines.next("the date"));
+    lines.skip(5, "the report, name, number, file's name and date");
     lines.skip(11, "sizes and shares of flux");
     const double factor = next_lamps(lines, photometry);
     lines.skip(kDirectRatios, "direct ratios");
@@ -280,9 +264,8 @@ std::string eulumdat_text(const PhotometricFile& photometry, const std::string& 
     if (table.angles != TableAngles::TypeC) {
         throw InputError("{}: found a table of type A or B; allowed in .ldt: type C", file_name);
     }
-    const bool states_flux = !photometry.is_absolute && photometry.luminous_flux_lm.has_value();
     const double emitted_lm = table_flux(table);
-    const double flux_lm = states_flux ? *photometry.luminous_flux_lm : emitted_lm;
+    const double flux_lm = photometry.luminous_flux_lm.value_or(emitted_lm);
     if (!(emitted_lm > 0.0 && flux_lm > 0.0)) {
         throw InputError(
             "{}: found a table without light; allowed in .ldt: intensities per 1000 lm", file_name);
@@ -296,23 +279,22 @@ std::string eulumdat_text(const PhotometricFile& photometry, const std::string& 
     const auto add_times = [&add](int times, std::string_view line) {
         for (int i = 0; i < times; ++i) add(line);
     };
-    add(text_labelled(photometry, "MANUFAC"));
+    add("");
     add(is_round ? "1" : "3");
     add(is_round ? "1" : "0");
     add(fmt::format("{}", turn.size()));
     add(step_text(turn));
     add(fmt::format("{}", table.vertical_rad.size()));
     add(step_text(table.vertical_rad));
-    for (const std::string_view keyword : {"TEST", "LUMINAIRE", "LUMCAT", "FILE", "ISSUEDATE"})
-        add(text_labelled(photometry, keyword));
+    add_times(5, "");
     add_times(9, "0");
     add(percent_text(table_flux(downward(table)) / emitted_lm));
     add(percent_text(emitted_lm / flux_lm));
     add("1");
     add("0");
     add("1");
-    add(states_flux ? "1" : "-1");
-    add(text_labelled(photometry, "LAMP"));
+    add(photometry.luminous_flux_lm ? "1" : "-1");
+    add("");
     add(fmt::format("{}", flux_lm));
     add_times(3, "0");
     add_times(kDirectRatios, "0");

@@ -2,7 +2,6 @@
 #include "rig/beam/ies_file.h"
 
 #include "base/error.h"
-#include "base/printable.h"
 #include "base/words.h"
 #include "rig/beam/photometric_text.h"
 
@@ -118,23 +117,6 @@ std::optional<int> edition_in(const std::string& file, std::size_t number, std::
                              shown_word(line)));
 }
 
-// "[KEYWORD] text", or any text.
-void add_label(std::vector<PhotometricLabel>& labels, std::string_view line) {
-    PhotometricLabel label;
-    const std::size_t close = line.find(']');
-    if (line.starts_with('[') && close != std::string_view::npos) {
-        label.keyword = printable(without_blanks(line.substr(1, close - 1)));
-        line.remove_prefix(close + 1);
-    }
-    label.text = printable(without_blanks(line));
-    if (lower_case(label.keyword) == "more" && !labels.empty()) {
-        std::string& text = labels.back().text;
-        text += (text.empty() || label.text.empty() ? "" : " ") + label.text;
-    } else {
-        labels.push_back(std::move(label));
-    }
-}
-
 // The text after TILT= in a line that starts so.
 std::optional<std::string_view> tilt_in(std::string_view line) {
     constexpr std::string_view kTilt = "tilt";
@@ -180,8 +162,7 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
     };
     const std::size_t lamps = count("the number of lamps", 1, kMostLamps);
     const FileNumber lumens = numbers.next("lumens per lamp");
-    photometry.is_absolute = lumens.value == -1.0;
-    if ((lumens.value < 0.0 && !photometry.is_absolute) || lumens.value > kMostLumens) {
+    if ((lumens.value < 0.0 && lumens.value != -1.0) || lumens.value > kMostLumens) {
         fail_number(file,
                     lumens,
                     "lumens per lamp",
@@ -329,54 +310,6 @@ class LineWriter {
     std::size_t width_ = 0;
 };
 
-// Whole words, continued on [MORE] lines when a line is full.
-void add_label(LineWriter& lines, const PhotometricLabel& label) {
-    std::string line = fmt::format("[{}]", label.keyword);
-    bool has_word = false;
-    for (std::string_view text = label.text; !text.empty();) {
-        const std::string_view word = text.substr(0, text.find(' '));
-        text.remove_prefix(std::min(word.size() + 1, text.size()));
-        if (word.empty()) continue;
-        if (has_word && line.size() + 1 + word.size() > kLineWidth) {
-            lines.add(std::exchange(line, "[MORE]"));
-            lines.end_line();
-        }
-        line.append(" ").append(word);
-        has_word = true;
-    }
-    lines.add(line);
-    lines.end_line();
-}
-
-// The standard's keywords are kept, others are prefixed by _.
-std::string ies_keyword(const std::string& keyword) {
-    constexpr std::array kKnown{"TEST",         "TESTLAB",     "ISSUEDATE",     "MANUFAC",
-                                "LUMCAT",       "LUMINAIRE",   "LAMPCAT",       "LAMP",
-                                "TESTDATE",     "BALLASTCAT",  "BALLAST",       "MAINTCAT",
-                                "DISTRIBUTION", "FLASHAREA",   "COLORCONSTANT", "LAMPPOSITION",
-                                "NEARFIELD",    "FILEGENINFO", "OTHER",         "SEARCH"};
-    if (keyword.empty()) return "OTHER";
-    std::string name;
-    for (const char c : keyword) {
-        const bool is_small = c >= 'a' && c <= 'z';
-        const bool is_plain = is_small || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        name += is_small ? static_cast<char>(c - 'a' + 'A') : is_plain ? c : '_';
-    }
-    const bool is_known = std::ranges::find(kKnown, name) != kKnown.end();
-    return is_known || name.starts_with('_') ? name : "_" + name;
-}
-
-void add_labels(LineWriter& lines, const std::vector<PhotometricLabel>& labels) {
-    std::vector<PhotometricLabel> all;
-    for (const PhotometricLabel& label : labels)
-        all.push_back({ies_keyword(label.keyword), label.text});
-    for (const std::string_view needed : {"TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"}) {
-        const auto found = std::ranges::find(all, needed, &PhotometricLabel::keyword);
-        if (found == all.end()) all.push_back({std::string(needed), "not stated"});
-    }
-    for (const PhotometricLabel& label : all) add_label(lines, label);
-}
-
 void add_numbers(LineWriter& lines, const std::vector<std::string>& numbers) {
     for (const std::string& number : numbers) lines.add(number);
     lines.end_line();
@@ -419,13 +352,11 @@ PhotometricFile parse_ies(const std::string& file_name, std::string_view bytes) 
                 "factors of 1");
         }
         const std::string_view line = lines.next();
-        const std::optional<int> named = edition_in(file_name, lines.line(), line);
-        if (named) {
+        if (const auto named = edition_in(file_name, lines.line(), line)) {
             edition = *named;
-            continue;
+        } else {
+            tilt_word = tilt_in(line);
         }
-        tilt_word = tilt_in(line);
-        if (!tilt_word && !line.empty()) add_label(photometry.labels, line);
     }
     const std::string word = lower_case(std::string(*tilt_word));
     NumberReader numbers(file_name, lines.rest(), lines.line() + 1);
@@ -447,18 +378,21 @@ std::string ies_text(const PhotometricFile& photometry, const std::string& file_
     const BeamTable& table = photometry.table;
     check_sides(table, file_name);
     LineWriter lines;
-    lines.add("IESNA:LM-63-2002");
-    lines.end_line();
-    add_labels(lines, photometry.labels);
-    lines.add("TILT=NONE");
-    lines.end_line();
-    const bool states_flux = !photometry.is_absolute && photometry.luminous_flux_lm.has_value();
+    for (const std::string_view line : {"IESNA:LM-63-2002",
+                                        "[TEST] not stated",
+                                        "[TESTLAB] not stated",
+                                        "[ISSUEDATE] not stated",
+                                        "[MANUFAC] not stated",
+                                        "TILT=NONE"}) {
+        lines.add(line);
+        lines.end_line();
+    }
     const int type = table.angles == TableAngles::TypeC   ? 1
                      : table.angles == TableAngles::TypeB ? 2
                                                           : 3;
     add_numbers(lines,
                 {"1",
-                 states_flux ? number_text(*photometry.luminous_flux_lm) : "-1",
+                 photometry.luminous_flux_lm ? number_text(*photometry.luminous_flux_lm) : "-1",
                  "1",
                  fmt::format("{}", table.vertical_rad.size()),
                  fmt::format("{}", table.horizontal_rad.size()),

@@ -45,7 +45,7 @@ namespace aphotic {
 
 // Written as LM-63-2002, which every reader supports. The type is kept, symmetries are unfolded,
 // and photometry is absolute if the lamps' flux is unknown. Keywords that the edition requires have
-// the value "not stated" if unknown.
+// the value "not stated".
 [[nodiscard]] std::string ies_text(const PhotometricFile& photometry, const std::string& file_name);
 
 }  // namespace aphotic

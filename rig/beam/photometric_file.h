@@ -10,8 +10,9 @@
 // all of them, angle 0 about the axis is our along, and it increases in the direction of LM-63's
 // type C (rig/beam/beam_table.h).
 //
-// The table describes the lamp in the medium in which it was measured, most often air. An error is
-// an InputError "file:line: what was found; allowed: ...".
+// The table describes the lamp in the medium in which it was measured, most often air. Texts in
+// the file, such as the maker's name, are ignored. An error is an InputError
+// "file:line: what was found; allowed: ...".
 #pragma once
 
 #include "rig/beam/beam_table.h"
@@ -21,26 +22,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace aphotic {
-
-// Further information in the file: "[LUMCAT] T-100" of .ies, "# key: text" of .csv. keyword may be
-// empty.
-struct PhotometricLabel {
-    std::string keyword;
-    std::string text;  // UTF-8, one line
-
-    [[nodiscard]] bool operator==(const PhotometricLabel&) const = default;
-};
 
 struct PhotometricFile {
     BeamTable table;  // the lamp as measured
     // The file's flux for all lamps; empty for .csv without one, and for absolute photometry, which
     // does not separate the lamp from the luminaire.
     std::optional<double> luminous_flux_lm;
-    bool is_absolute = false;
-    std::vector<PhotometricLabel> labels;
 
     [[nodiscard]] bool operator==(const PhotometricFile&) const = default;
 };

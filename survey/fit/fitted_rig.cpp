@@ -37,8 +37,7 @@ void add_beam(const FitBeam& fit,
         const std::string file = fmt::format("{}-beam.csv", name);
         PhotometricFile photometry;
         photometry.table = std::get<BeamTable>(fitted.beam.pattern);
-        photometry.labels = {{"source", "aphotic fit"}};
-        write_text_file(folder / file, beam_csv_text(photometry, file));
+        write_text_file(folder / file, "# source: aphotic fit\n" + beam_csv_text(photometry, file));
         text.set(key + ".table", file);
         return;
     }
