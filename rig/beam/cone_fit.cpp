@@ -2,7 +2,6 @@
 #include "rig/beam/cone_fit.h"
 
 #include "base/degrees.h"
-#include "base/non_negative_fit.h"
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
@@ -84,13 +83,15 @@ struct Shares {
     double gain = 0.0;  // reduction of the integral
 };
 
+// No gain for a share of 0, which is a smaller set, or less, which is no cone.
 Shares shares_of(const Equations& all, const std::set<int>& steps) {
+    if (steps.empty()) return {};
     std::vector<Eigen::Index> chosen;
     for (const int step : steps) chosen.push_back(step - 1);
     const MatrixXd G = all.G(chosen, chosen);
     const VectorXd b = all.b(chosen);
-    const VectorXd alpha = non_negative_fit(G, b);
-    return {.alpha = alpha, .gain = 2.0 * b.dot(alpha) - alpha.dot(G * alpha)};
+    const VectorXd alpha = G.ldlt().solve(b);
+    return {.alpha = alpha, .gain = alpha.minCoeff() > 0.0 ? b.dot(alpha) : 0.0};
 }
 
 // The best set that differs from this one only in `moving`, by up to `reach` steps.
@@ -137,11 +138,9 @@ ConeFit fit_cones(const Beam& beam, int count) {
                 .error = std::sqrt(std::max(0.0, rings.square - shares.gain) / rings.square)};
     Eigen::Index i = 0;
     for (const int step : chosen) {
-        const double alpha = shares.alpha(i++);
-        if (alpha == 0.0) continue;
         fit.cones.push_back({.part = fmt::format("cone{}", fit.cones.size() + 1),
                              .half_angle_rad = half_angle_rad(step),
-                             .weight = alpha});
+                             .weight = shares.alpha(i++)});
     }
     return fit;
 }

@@ -5,9 +5,10 @@
 //
 //   integral of (I(w) - sum of alpha_k cos(theta) / (pi sin^2 gamma_k) [theta <= gamma_k])^2 dw
 //
-// Shares come from non-negative least squares. Half angles are multiples of kFitStep_deg: each
-// further cone is the one that improves the fit most, then each in turn moves as long as that
-// improves it. The result is a minimum that no single move improves, not always the global one.
+// Shares come from least squares, and a set of cones needs shares above 0. Half angles are
+// multiples of kFitStep_deg: each further cone is the one that improves the fit most, then each in
+// turn moves as long as that improves it. The result is a minimum that no single move improves, not
+// always the global one.
 //
 //   error   (the integral / integral of I^2)^(1/2): the part that these cones do not fit
 #pragma once
