@@ -8,49 +8,32 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <vector>
 
 namespace aphotic {
 namespace {
 
-// Not by the library's own callback for each new value, which visits all values of a list whenever
-// one of them ends.
-int depth_of(std::string_view text) {
+// The depth, without building values; and duplicate keys in an object, of which the library
+// silently keeps the last.
+struct Survey final : nlohmann::json_sax<nlohmann::json> {
+    std::vector<std::set<std::string>> open{};  // the keys of open objects
+    std::optional<std::string> twice{};
     int depth = 0;
     int deepest = 0;
-    bool is_in_text = false;
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        const char c = text[at];
-        if (c == '"') is_in_text = !is_in_text;
-        if (is_in_text) {
-            if (c == '\\') ++at;
-        } else if (c == '[' || c == '{') {
-            deepest = std::max(deepest, ++depth);
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-    return deepest;
-}
-
-// The library silently keeps the last of duplicate keys in an object.
-struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
-    std::vector<std::set<std::string>> open{};  // the keys of open objects
-    std::string twice{};
 
     bool start_object(std::size_t) override {
         open.emplace_back();
-        return true;
+        return start_array(0);
     }
     bool end_object() override {
         open.pop_back();
-        return true;
+        return end_array();
     }
     bool key(string_t& name) override {
-        if (open.back().insert(name).second) return true;
-        twice = name;
-        return false;
+        if (!open.back().insert(name).second && !twice) twice = name;
+        return true;
     }
     bool null() override { return true; }
     bool boolean(bool) override { return true; }
@@ -59,8 +42,14 @@ struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t&) override { return true; }
     bool binary(binary_t&) override { return true; }
-    bool start_array(std::size_t) override { return true; }
-    bool end_array() override { return true; }
+    bool start_array(std::size_t) override {
+        deepest = std::max(deepest, ++depth);
+        return true;
+    }
+    bool end_array() override {
+        --depth;
+        return true;
+    }
     bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
         return false;
     }
@@ -69,17 +58,18 @@ struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text, const std::string& what) {
-    if (const int depth = depth_of(text); depth > kMostJsonDepth) {
-        throw InputError(
-            "{}: found values nested {} deep; allowed: up to {}", what, depth, kMostJsonDepth);
+    Survey survey;
+    const bool is_valid = nlohmann::json::sax_parse(text, &survey);
+    if (survey.deepest > kMostJsonDepth) {
+        throw InputError("{}: found values nested {} deep; allowed: up to {}",
+                         what,
+                         survey.deepest,
+                         kMostJsonDepth);
     }
-    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw InputError(what + ": not valid JSON");
-    KeysOnce keys;
-    nlohmann::json::sax_parse(text, &keys);
-    if (!keys.twice.empty())
-        throw InputError("{}: duplicate key '{}' in an object", what, excerpt(keys.twice));
-    return json;
+    if (!is_valid) throw InputError(what + ": not valid JSON");
+    if (survey.twice)
+        throw InputError("{}: duplicate key '{}' in an object", what, excerpt(*survey.twice));
+    return nlohmann::json::parse(text);
 }
 
 std::string json_text(const nlohmann::ordered_json& json) {

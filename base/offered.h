@@ -5,8 +5,6 @@
 // 0.12345 in three digits is at least 0.124 and at most 0.123; 0.1 stays 0.1.
 #pragma once
 
-#include <string>
-
 namespace aphotic {
 
 inline constexpr int kOfferedDigits = 3;
@@ -15,9 +13,5 @@ inline constexpr int kOfferedDigits = 3;
 // from its digits. Numbers that are not finite are returned unchanged.
 [[nodiscard]] double at_least(double value, int digits = kOfferedDigits);
 [[nodiscard]] double at_most(double value, int digits = kOfferedDigits);
-
-// Digits that std::format's {} prints for such a number: the fewest that read back to it.
-[[nodiscard]] std::string at_least_text(double value, int digits = kOfferedDigits);
-[[nodiscard]] std::string at_most_text(double value, int digits = kOfferedDigits);
 
 }  // namespace aphotic

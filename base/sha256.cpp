@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstring>
 #include <fstream>
 #include <memory>
 
@@ -52,9 +51,7 @@ std::string sha256_of_text(std::string_view text) {
 
 std::string sha256_of_floats(std::span<const float> samples) {
     const std::span<const std::byte> bytes = std::as_bytes(samples);
-    std::string text(bytes.size(), '\0');
-    std::memcpy(text.data(), bytes.data(), bytes.size());
-    return sha256_of_text(text);
+    return sha256_of_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {

@@ -139,12 +139,12 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     const Plane floor = floor_plane(sled);
     const double height_m = height_above(floor, strobe.position_m);
     if (height_m < kLeastDistance_m) {
-        throw InputError(
-            "strobe '{}' is {} m {} the sea floor; allowed: at least {} m above it",
-            strobe.name,
-            height_m < 0.0 ? fmt::format("{:.4f}", -height_m) : at_most_text(height_m, 4),
-            height_m < 0.0 ? "below" : "above",
-            kLeastDistance_m);
+        throw InputError("strobe '{}' is {} m {} the sea floor; allowed: at least {} m above it",
+                         strobe.name,
+                         height_m < 0.0 ? fmt::format("{:.4f}", -height_m)
+                                        : fmt::format("{}", at_most(height_m, 4)),
+                         height_m < 0.0 ? "below" : "above",
+                         kLeastDistance_m);
     }
     for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
         if (height_above(floor, lamp_m) > 0.0) continue;

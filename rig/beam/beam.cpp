@@ -382,21 +382,7 @@ double most_intensity(const Beam& beam) {
 }
 
 bool reaches(const Beam& beam, const BeamFrame& frame, const Vector3d& towards, double within_rad) {
-    const auto cone = cone_of(beam, turned(beam, frame, towards), within_rad);
-    if (!cone) return false;
-    return std::visit(
-        Cases{[&](std::monostate) {
-                  return std::ranges::any_of(beam.cones, [&](const Cone& one) {
-                      return one.weight > 0.0 && cone->nearest_rad <= one.half_angle_rad;
-                  });
-              },
-              [&](const BeamTable& table) {
-                  return table_reaches(table, cone->direction, cone->within_rad);
-              },
-              [&](const BeamOptics& optics) {
-                  return most_optics_intensity(optics, cone->direction, cone->within_rad) > 0.0;
-              }},
-        beam.pattern);
+    return most_intensity(beam, frame, towards, within_rad) > 0.0;
 }
 
 bool is_dark(const Beam& beam) {
@@ -474,14 +460,6 @@ Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wan
         if (!is_pattern(part) && is_wanted(part)) kept.cones.push_back(part.cones.front());
     }
     return kept;
-}
-
-double ConeLight::at(double cosine, double cosine_from) const {
-    if (cosine <= 0.0) return 0.0;
-    const bool is_sharp = full_cosine < 0.0;
-    if (is_sharp ? cosine_from < edge_cosine : cosine <= edge_cosine) return 0.0;
-    const double intensity = on_axis * falloff(cosine, exponent);
-    return is_sharp ? intensity : intensity * smooth_step(cosine, edge_cosine, full_cosine);
 }
 
 std::vector<ConeLight> cone_lights(const Beam& beam) {

@@ -154,10 +154,6 @@ struct ConeLight {
     double exponent = 1.0;
     double edge_cosine = 0.0;
     double full_cosine = -1.0;  // start of the soft edge; -1 without one
-
-    // I at a cosine, without any edge between it and the other cosine, that of the direction
-    // `from`.
-    [[nodiscard]] double at(double cosine, double cosine_from) const;
 };
 [[nodiscard]] std::vector<ConeLight> cone_lights(const Beam& beam);
 

@@ -251,10 +251,6 @@ double largest_intensity(const BeamTable& table) {
     return *std::ranges::max_element(table.intensity);
 }
 
-bool table_reaches(const BeamTable& table, const Vector3d& direction, double within_rad) {
-    return most_table_intensity(table, direction, within_rad) > 0.0;
-}
-
 double table_flux(const BeamTable& table) {
     std::vector<double> vertical = table.vertical_rad;
     if (table.angles == TableAngles::TypeC)

@@ -59,11 +59,6 @@ struct BeamTable {
 // The maximum over all directions.
 [[nodiscard]] double largest_intensity(const BeamTable& table);
 
-// Whether there may be light within an angle of this direction. False is certain.
-[[nodiscard]] bool table_reaches(const BeamTable& table,
-                                 const Eigen::Vector3d& direction,
-                                 double within_rad);
-
 // The integral of I over all directions, exact except for rounding, in the table's unit times sr.
 // With x the angle on which the solid angle depends (dw = cos x dx dy; C: V - pi/2, A: V, B: H),
 //

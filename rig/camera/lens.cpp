@@ -27,18 +27,9 @@ Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
 }
 
 std::vector<Vector3d> rim_seen_by_lens(const Camera& camera) {
-    constexpr int kSteps = 64;
     std::vector<Vector3d> rim;
-    for (int i = 0; i <= kSteps; ++i) {
-        const double column = camera.width_px * (i / static_cast<double>(kSteps));
-        const double row = camera.height_px * (i / static_cast<double>(kSteps));
-        for (const Vector2d& point_px : {Vector2d(column, 0.0),
-                                         Vector2d(column, camera.height_px),
-                                         Vector2d(0.0, row),
-                                         Vector2d(camera.width_px, row)}) {
-            rim.push_back(seen_by_lens(*camera.lens, point_px));
-        }
-    }
+    for (const Vector2d& point_px : rim_px(camera.width_px, camera.height_px))
+        rim.push_back(seen_by_lens(*camera.lens, point_px));
     return rim;
 }
 

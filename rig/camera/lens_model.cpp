@@ -135,26 +135,29 @@ std::optional<Vector3d> direction_at(const LensModel& lens, const Vector2d& poin
     return direction;
 }
 
-void require_to_hold(const LensModel& lens, int width_px, int height_px) {
-    const double most_rad = reach_rad(lens);
+std::vector<Vector2d> rim_px(int width_px, int height_px) {
     constexpr int kSteps = 64;
+    std::vector<Vector2d> rim;
     for (int i = 0; i <= kSteps; ++i) {
         const double column = width_px * (i / static_cast<double>(kSteps));
         const double row = height_px * (i / static_cast<double>(kSteps));
-        for (const Vector2d& point_px : {Vector2d(column, 0.0),
-                                         Vector2d(column, height_px),
-                                         Vector2d(0.0, row),
-                                         Vector2d(width_px, row)}) {
-            const std::optional<Vector3d> direction = direction_at(lens, point_px);
-            if (direction && std::acos(std::min(1.0, direction->z())) < most_rad) continue;
-            throw InputError(
-                "the lens model is valid to {:.2f} degrees off the axis, which the image exceeds "
-                "at column {:.0f}, row {:.0f}; allowed: a calibration that is valid over the whole "
-                "image, within 89.9 degrees",
-                most_rad * kDegreesPerRadian,
-                point_px.x(),
-                point_px.y());
-        }
+        rim.insert(rim.end(), {{column, 0.0}, {column, height_px}, {0.0, row}, {width_px, row}});
+    }
+    return rim;
+}
+
+void require_to_hold(const LensModel& lens, int width_px, int height_px) {
+    const double most_rad = reach_rad(lens);
+    for (const Vector2d& point_px : rim_px(width_px, height_px)) {
+        const std::optional<Vector3d> direction = direction_at(lens, point_px);
+        if (direction && std::acos(std::min(1.0, direction->z())) < most_rad) continue;
+        throw InputError(
+            "the lens model is valid to {:.2f} degrees off the axis, which the image exceeds at "
+            "column {:.0f}, row {:.0f}; allowed: a calibration that is valid over the whole image, "
+            "within 89.9 degrees",
+            most_rad * kDegreesPerRadian,
+            point_px.x(),
+            point_px.y());
     }
 }
 

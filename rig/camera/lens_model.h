@@ -28,6 +28,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace aphotic {
 
@@ -50,6 +51,9 @@ struct LensModel {
 // not valid.
 [[nodiscard]] std::optional<Eigen::Vector3d> direction_at(const LensModel& lens,
                                                           const Eigen::Vector2d& point_px);
+
+// Points along the four sides of an image, a 64th of a side apart.
+[[nodiscard]] std::vector<Eigen::Vector2d> rim_px(int width_px, int height_px);
 
 // An InputError, which names the angle, unless the model is valid over the whole image.
 void require_to_hold(const LensModel& lens, int width_px, int height_px);

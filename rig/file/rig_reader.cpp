@@ -297,10 +297,7 @@ void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
         camera.vignetting = read_vignetting_table(section, files);
     }
     section.refuse_unknown_keys();
-    (void)camera_section.at_key("vignetting", [&] {
-        require_bright(camera);
-        return true;
-    });
+    camera_section.at_key("vignetting", [&] { require_bright(camera); });
 }
 
 // The camera's position on the vehicle.
@@ -542,18 +539,8 @@ Emitter read_emitter(Section& strobe) {
 // Phi(lambda) = power S(lambda) of the table S: for a lamp of known flux, power is that over the
 // integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
 double read_power(Section& strobe, const Spectrum& spectrum) {
-    const std::vector<std::string> kinds{"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"};
-    std::string kind;
-    for (const std::string& key : kinds) {
-        if (!strobe.has(key)) continue;
-        if (!kind.empty()) {
-            strobe.fail_at(
-                key,
-                fmt::format(
-                    "found together with {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
-        }
-        kind = key;
-    }
+    const std::string_view kind =
+        strobe.refuse_both({"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"});
     if (kind.empty()) return 1.0;
     const double value = strobe.number(kind, kind == "power" ? kPower : kFlux);
     if (kind == "power") return value;
@@ -666,10 +653,7 @@ Object read_object(Section section, RigFiles& files, const std::vector<Strobe>& 
         .phong = section.number_or("phong", kPhong, 0.0),
         .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
     section.refuse_unknown_keys();
-    (void)section.at_key(key, [&] {
-        require_place(object.shape, strobes);
-        return true;
-    });
+    section.at_key(key, [&] { require_place(object.shape, strobes); });
     return object;
 }
 
@@ -798,10 +782,7 @@ Rig read_all(Section top, RigFiles files, std::string toml) {
             .toml = std::move(toml),
             .files = files.all()};
     const Section camera_section = top.section("camera", "a table [camera]");
-    (void)camera_section.at_key("range_nm", [&] {
-        require_tables_to_cover_the_range(rig);
-        return true;
-    });
+    camera_section.at_key("range_nm", [&] { require_tables_to_cover_the_range(rig); });
     return rig;
 }
 

@@ -137,7 +137,7 @@ void Section::refuse_keys_but(std::string_view known) {
     refuse_unknown_keys();
 }
 
-void Section::refuse_both(std::initializer_list<std::string_view> keys) {
+std::string_view Section::refuse_both(std::initializer_list<std::string_view> keys) {
     std::string_view first;
     for (const std::string_view key : keys) {
         if (!has(key)) continue;
@@ -145,6 +145,7 @@ void Section::refuse_both(std::initializer_list<std::string_view> keys) {
             fail_at(key, fmt::format("found together with '{}'; allowed: one of them", first));
         first = key;
     }
+    return first;
 }
 
 void Section::require_one_line(const toml::node& node,

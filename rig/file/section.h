@@ -15,7 +15,6 @@
 #include <array>
 #include <cstddef>
 #include <initializer_list>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,11 +63,8 @@ class Section {
 
     template <std::size_t n>
     [[nodiscard]] std::array<double, n> numbers(std::string_view key, Bounds bounds) {
-        const bool is_any = bounds.most == std::numeric_limits<double>::max();
-        const std::string allowed = fmt::format(
-            "an array of {} numbers{}",
-            n,
-            is_any ? "" : fmt::format(", each from {} to {}", bounds.least, bounds.most));
+        const std::string allowed =
+            fmt::format("an array of {} numbers, each from {} to {}", n, bounds.least, bounds.most);
         const toml::array* array = required(key, allowed).as_array();
         if (array == nullptr || array->size() != n) found_but(key, allowed);
         std::array<double, n> values{};
@@ -108,12 +104,12 @@ class Section {
     // then names the cause.
     void refuse_keys_but(std::string_view known);  // separated by commas
 
-    // Alternative ways to give one value.
-    void refuse_both(std::initializer_list<std::string_view> keys);
+    // The one of these keys that is there, or empty: alternative ways to give one value.
+    std::string_view refuse_both(std::initializer_list<std::string_view> keys);
 
     // Runs read(), and prefixes any InputError with file, line and key.
     template <typename Read>
-    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
+    auto at_key(std::string_view key, Read read) const {
         try {
             return read();
         } catch (const InputError& error) {

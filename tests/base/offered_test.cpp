@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/offered.h"
 
+#include "base/number.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -12,16 +13,16 @@ namespace aphotic::offered_test {
 namespace {
 
 TEST(Offered, IsRoundedOutwardInFewDigits) {
-    EXPECT_EQ(at_least_text(0.0464801), "0.0465");
-    EXPECT_EQ(at_least_text(0.0464301), "0.0465");
-    EXPECT_EQ(at_most_text(0.0464801), "0.0464");
-    EXPECT_EQ(at_least_text(0.1), "0.1");
-    EXPECT_EQ(at_most_text(0.1), "0.1");
-    EXPECT_EQ(at_least_text(9.991), "10");
-    EXPECT_EQ(at_least_text(0.09996), "0.1");
-    EXPECT_EQ(at_least_text(-1.2345), "-1.23");
-    EXPECT_EQ(at_most_text(-1.2345), "-1.24");
-    EXPECT_EQ(at_least_text(1234567.8, 6), "1234570");
+    EXPECT_EQ(at_least(0.0464801), 0.0465);
+    EXPECT_EQ(at_least(0.0464301), 0.0465);
+    EXPECT_EQ(at_most(0.0464801), 0.0464);
+    EXPECT_EQ(at_least(0.1), 0.1);
+    EXPECT_EQ(at_most(0.1), 0.1);
+    EXPECT_EQ(at_least(9.991), 10.0);
+    EXPECT_EQ(at_least(0.09996), 0.1);
+    EXPECT_EQ(at_least(-1.2345), -1.23);
+    EXPECT_EQ(at_most(-1.2345), -1.24);
+    EXPECT_EQ(at_least(1234567.8, 6), 1234570.0);
     EXPECT_EQ(at_least(0.0), 0.0);
     EXPECT_TRUE(std::isinf(at_least(std::numeric_limits<double>::infinity())));
 }
@@ -33,11 +34,12 @@ TEST(Offered, HoldsWhenItIsTyped) {
         const double value = std::pow(10.0, magnitude(random)) * (i % 2 == 0 ? 1.0 : -1.0);
         for (const int digits : {2, 3, 6}) {
             const double step = std::abs(value) * std::pow(10.0, 1 - digits);
-            const double least = std::strtod(at_least_text(value, digits).c_str(), nullptr);
-            EXPECT_EQ(least, at_least(value, digits));
+            const double least = at_least(value, digits);
+            EXPECT_EQ(least, rounded_to_digits(least, digits));
             EXPECT_GE(least, value);
             EXPECT_LE(least - value, step);
-            const double most = std::strtod(at_most_text(value, digits).c_str(), nullptr);
+            const double most = at_most(value, digits);
+            EXPECT_EQ(most, rounded_to_digits(most, digits));
             EXPECT_LE(most, value);
             EXPECT_LE(value - most, step);
         }
