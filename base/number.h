@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -32,6 +33,13 @@ template <typename Number>
 [[nodiscard]] std::optional<Number> read_number(std::string_view text) {
     const std::optional<Number> number = read_leading_number<Number>(text);
     return text.empty() ? number : std::nullopt;
+}
+
+// In other programs' files, which may write a leading +.
+[[nodiscard]] inline std::optional<double> finite_number(std::string_view word) {
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    const auto number = read_number<double>(word);
+    return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 // The double nearest to a value's first significant digits, so that it prints with no more: 120 for

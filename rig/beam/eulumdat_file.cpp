@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/beam/eulumdat_file.h"
 
+#include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
 #include "rig/beam/photometric_text.h"
@@ -32,10 +33,7 @@ class ValueLines {
         if (rest_.empty()) {
             fail_at_line(file_, line_, fmt::format("the file ends where {} should be", what));
         }
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        const std::string_view text = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
-        return without_blanks(text);
+        return trimmed(next_line(rest_));
     }
 
     void skip(std::size_t lines, std::string_view what) {

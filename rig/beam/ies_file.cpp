@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/beam/ies_file.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/words.h"
 #include "rig/beam/photometric_text.h"
@@ -29,11 +30,8 @@ class LineReader {
     [[nodiscard]] std::string_view rest() const { return rest_; }
 
     std::string_view next() {
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        const std::string_view text = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
         ++line_;
-        return without_blanks(text);
+        return trimmed(next_line(rest_));
     }
 
   private:
@@ -121,9 +119,9 @@ std::optional<int> edition_in(const std::string& file, std::size_t number, std::
 std::optional<std::string_view> tilt_in(std::string_view line) {
     constexpr std::string_view kTilt = "tilt";
     if (lower_case(std::string(line.substr(0, kTilt.size()))) != kTilt) return std::nullopt;
-    line = without_blanks(line.substr(kTilt.size()));
+    line = trimmed(line.substr(kTilt.size()));
     if (!line.starts_with('=')) return std::nullopt;
-    return without_blanks(line.substr(1));
+    return trimmed(line.substr(1));
 }
 
 // A table of factors for light over the lamp's tilt; only constant ones are accepted.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/beam/photometric_text.h"
 
+#include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/number.h"
@@ -41,8 +42,7 @@ void sort_by_angle(std::vector<TurnPlane>& planes) {
 }  // namespace
 
 std::string utf8_of(std::string_view text) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    text = without_byte_order_mark(text);
     if (is_utf8(text)) return std::string(text);
     std::string result;
     for (const char c : text)
@@ -50,31 +50,15 @@ std::string utf8_of(std::string_view text) {
     return result;
 }
 
-std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view kSpaces = " \t\r\f\v";
-    const std::size_t first = text.find_first_not_of(kSpaces);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
-}
-
 std::string shown_word(std::string_view word) {
-    constexpr std::size_t kMostLetters = 60;
-    const bool is_long = word.size() > kMostLetters;
-    return fmt::format(
-        "'{}{}'", printable(word.substr(0, kMostLetters)), is_long ? "..." : std::string_view());
-}
-
-std::optional<double> finite_decimal(std::string_view word) {
-    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    const auto number = read_number<double>(word);
-    return number && std::isfinite(*number) ? number : std::nullopt;
+    return fmt::format("'{}'", excerpt(word));
 }
 
 FileNumber number_of(const std::string& file,
                      std::size_t line,
                      std::string_view word,
                      std::string_view what) {
-    const std::optional<double> value = finite_decimal(word);
+    const std::optional<double> value = finite_number(word);
     if (!value) {
         fail_at_line(file,
                      line,
@@ -222,7 +206,7 @@ std::vector<double> radians_of(const std::vector<FileNumber>& angles_deg) {
 std::string degrees_text(double angle_rad) {
     const double near_deg = angle_rad * kDegreesPerRadian;
     for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
-        const double deg = *finite_decimal(fmt::format("{:.{}g}", near_deg, digits));
+        const double deg = *finite_number(fmt::format("{:.{}g}", near_deg, digits));
         if (radians_of(deg) == angle_rad) return fmt::format("{}", deg);
     }
     // In places, doubles in degrees are finer than in radians, and the division may be off by a

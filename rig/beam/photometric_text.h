@@ -7,7 +7,6 @@
 #include "rig/beam/beam_table.h"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,12 +22,8 @@ inline constexpr double kLeastAngleStep_deg = 1e-6;
 // The text as UTF-8, from UTF-8 or else Latin-1; without a byte order mark.
 [[nodiscard]] std::string utf8_of(std::string_view text);
 
-[[nodiscard]] std::string_view without_blanks(std::string_view text);
-
 // A word of the file, as shown in messages.
 [[nodiscard]] std::string shown_word(std::string_view word);
-
-[[nodiscard]] std::optional<double> finite_decimal(std::string_view word);
 
 // An error about a number: "file:line: what: found ...; allowed: ...".
 struct FileNumber {

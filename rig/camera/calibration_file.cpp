@@ -3,15 +3,12 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "image/image_size.h"
 #include "rig/beam/photometric_text.h"
 #include "rig/camera/calibration_keys.h"
 #include "rig/camera/colmap_calibration.h"
 #include "rig/camera/opencv_calibration.h"
 
 #include <fmt/format.h>
-
-#include <cmath>
 
 namespace aphotic {
 
@@ -47,18 +44,6 @@ std::vector<std::string> cameras_of(const CalibrationKeys& keys) {
     return cameras;
 }
 
-void read_resolution(const CalibrationKeys& camera, CameraCalibration& made) {
-    const std::vector<double> resolution = camera.numbers("resolution", 2);
-    for (const double pixels : resolution) {
-        if (pixels >= 1.0 && pixels <= kLargestImagePx && pixels == std::floor(pixels)) continue;
-        camera.fail(
-            "resolution",
-            fmt::format("found {}; allowed: whole numbers from 1 to {}", pixels, kLargestImagePx));
-    }
-    made.width_px = static_cast<int>(resolution[0]);
-    made.height_px = static_cast<int>(resolution[1]);
-}
-
 bool is_camchain(const CalibrationKeys& keys) {
     return !cameras_of(keys).empty();
 }
@@ -71,8 +56,9 @@ CameraCalibration read_kalibr_calibration(const CalibrationKeys& keys) {
                               cameras[0]));
     }
     const CalibrationKeys camera = keys.map(cameras.front());
-    CameraCalibration made;
-    read_resolution(camera, made);
+    const std::vector<double> resolution = camera.numbers("resolution", 2);
+    CameraCalibration made{.width_px = camera.size("resolution", resolution[0]),
+                           .height_px = camera.size("resolution", resolution[1])};
     static_cast<void>(camera.word("camera_model", {"pinhole"}));
     const std::vector<double> intrinsics = camera.numbers("intrinsics", 4);
     made.lens.focal_px = {intrinsics[0], intrinsics[1]};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/camera/calibration_keys.h"
 
+#include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 #include "base/words.h"
 #include "image/image_size.h"
@@ -154,18 +156,6 @@ CalibrationValue value_of(const pugi::xml_node& element,
 
 }  // namespace
 
-std::vector<std::string_view> calibration_words(std::string_view text) {
-    constexpr std::string_view kBlank = " \t\r\n";
-    std::vector<std::string_view> words;
-    while (true) {
-        const std::size_t first = text.find_first_not_of(kBlank);
-        if (first == std::string_view::npos) return words;
-        text.remove_prefix(first);
-        words.push_back(text.substr(0, text.find_first_of(kBlank)));
-        text.remove_prefix(words.back().size());
-    }
-}
-
 CalibrationValue parse_calibration_yaml(const std::string& file_name, std::string_view text) {
     YamlReader reader(file_name);
     try {
@@ -244,7 +234,7 @@ const CalibrationValue& CalibrationKeys::required(std::string_view key,
 }
 
 double CalibrationKeys::finite(std::string_view key, std::string_view text) const {
-    const std::optional<double> number = finite_decimal(text);
+    const std::optional<double> number = finite_number(text);
     if (!number) fail(key, fmt::format("found {}; allowed: a finite number", shown_word(text)));
     return *number;
 }
@@ -259,8 +249,7 @@ double CalibrationKeys::number_or(std::string_view key, double absent) const {
     return has(key) ? number(key) : absent;
 }
 
-int CalibrationKeys::size(std::string_view key) const {
-    const double pixels = number(key);
+int CalibrationKeys::size(std::string_view key, double pixels) const {
     if (pixels < 1.0 || pixels > kLargestImagePx || pixels != std::floor(pixels)) {
         fail(
             key,
@@ -273,8 +262,7 @@ std::vector<double> CalibrationKeys::numbers(std::string_view key) const {
     const CalibrationValue& value = required(key, "a list of numbers");
     if (value.kind == Kind::Map) fail(key, "found keys; allowed: a list of numbers");
     std::vector<double> all;
-    for (const std::string_view word : calibration_words(value.text))
-        all.push_back(finite(key, word));
+    for (const std::string_view word : words_in(value.text)) all.push_back(finite(key, word));
     for (const CalibrationValue& item : value.values) {
         if (item.kind != Kind::Text) fail(key, "found nested lists; allowed: numbers");
         all.push_back(finite(key, item.text));

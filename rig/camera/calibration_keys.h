@@ -31,9 +31,6 @@ struct CalibrationValue {
 [[nodiscard]] CalibrationValue parse_calibration_xml(const std::string& file_name,
                                                      std::string_view text);
 
-// Without surrounding blanks and line ends.
-[[nodiscard]] std::vector<std::string_view> calibration_words(std::string_view text);
-
 // A map whose errors name file, line and key.
 class CalibrationKeys {
   public:
@@ -47,8 +44,9 @@ class CalibrationKeys {
 
     [[nodiscard]] double number(std::string_view key) const;
     [[nodiscard]] double number_or(std::string_view key, double absent) const;
-    // Pixels across or along an image.
-    [[nodiscard]] int size(std::string_view key) const;
+    // Pixels across or along an image: the key's number, or one of its numbers.
+    [[nodiscard]] int size(std::string_view key) const { return size(key, number(key)); }
+    [[nodiscard]] int size(std::string_view key, double pixels) const;
     // From a list, or from blank-separated words, as in XML.
     [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/camera/colmap_calibration.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/words.h"
 #include "image/image_size.h"
@@ -85,10 +86,8 @@ struct CameraLine {
 std::vector<CameraLine> first_cameras(std::string_view text) {
     std::vector<CameraLine> cameras;
     for (std::size_t line = 1; !text.empty() && cameras.size() < 2; ++line) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::vector<std::string_view> words = calibration_words(text.substr(0, end));
+        const std::vector<std::string_view> words = words_in(next_line(text));
         if (!words.empty() && !words.front().starts_with('#')) cameras.push_back({line, words});
-        text.remove_prefix(std::min(end + 1, text.size()));
     }
     return cameras;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/file/mesh_reader.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/printable.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -23,35 +23,6 @@ using Eigen::Vector3d;
 namespace {
 
 using Triangle = std::array<int, 3>;
-
-// The words of a line, without comments and line ends.
-std::vector<std::string_view> words_of(std::string_view line) {
-    constexpr std::string_view kBlank = " \t\r";
-    line = line.substr(0, line.find('#'));
-    std::vector<std::string_view> words;
-    while (true) {
-        const std::size_t first = line.find_first_not_of(kBlank);
-        if (first == std::string_view::npos) return words;
-        line.remove_prefix(first);
-        const std::size_t length = std::min(line.size(), line.find_first_of(kBlank));
-        words.push_back(line.substr(0, length));
-        line.remove_prefix(length);
-    }
-}
-
-// The part of a line shown in a message.
-std::string shown(const std::vector<std::string_view>& words) {
-    constexpr std::size_t kMostLetters = 200;
-    const std::string line = fmt::format("{}", fmt::join(words, " "));
-    return line.size() <= kMostLetters ? printable(line)
-                                       : printable(line.substr(0, kMostLetters)) + " ...";
-}
-
-std::optional<double> finite_number(std::string_view word) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto value = read_number<double>(word);
-    return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 // The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal
 // are ignored. Empty if no vertex above it has that number.
@@ -86,11 +57,15 @@ Faces read_lines(const std::string& text,
     std::string line;
     Faces faces;
     for (int number = 1; std::getline(lines, line); ++number) {
-        const std::vector<std::string_view> words = words_of(line);
+        const std::string_view content = std::string_view(line).substr(0, line.find('#'));
+        const std::vector<std::string_view> words = words_in(content);
         if (words.empty()) continue;
         const auto refuse = [&](std::string_view allowed) {
-            throw InputError(
-                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed);
+            throw InputError("{}:{}: found {}; allowed: {}",
+                             file_name,
+                             number,
+                             excerpt(trimmed(content)),
+                             allowed);
         };
         const std::span values = std::span(words).subspan(1);
         if (words[0] == "v") {

@@ -87,9 +87,6 @@ constexpr Bounds kDirection{-1e6, 1e6};
 constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
-const std::string kOneKindOfBeam =
-    "found together with another kind of beam; allowed: one of cones, fwhm_deg, table, or "
-    "diffuser_mm with its lens";
 // An object's size: POV-Ray ignores objects within a millimetre of the surface that they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
@@ -122,18 +119,15 @@ Glass read_glass(Section& port) {
 // A dome's own keys, besides those of all ports.
 Dome read_dome(Section& section) {
     Dome dome{.radius_m = section.number("radius_mm", kPortDistanceMm) * kMetresPerMillimetre};
-    if (section.has("centre_mm")) {
-        const auto centre_mm = section.numbers<3>("centre_mm", kDomeCentreMm);
-        dome.centre_m = Eigen::Vector3d(centre_mm.data()) * kMetresPerMillimetre;
-        if (dome.centre_m.norm() >= dome.radius_m)
-            section.found_but("centre_mm", "the pupil, [0, 0, 0], within radius_mm of the centre");
-    }
+    dome.centre_m = section.vector_or("centre_mm", kDomeCentreMm) * kMetresPerMillimetre;
+    if (dome.centre_m.norm() >= dome.radius_m)
+        section.found_but("centre_mm", "the pupil, [0, 0, 0], within radius_mm of the centre");
     return dome;
 }
 
 Eigen::Vector3d read_port_normal(Section& section) {
-    if (!section.has("normal")) return Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d normal(section.numbers<3>("normal", kDirection).data());
+    const Eigen::Vector3d normal =
+        section.vector_or("normal", kDirection, Eigen::Vector3d::UnitZ());
     if (normal.z() < std::cos(kMostPortTiltDeg * kRadiansPerDegree) * normal.norm() ||
         normal.norm() == 0.0) {
         section.found_but("normal",
@@ -302,13 +296,8 @@ void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
 
 // The camera's position on the vehicle.
 void read_place(Section& camera, Mounting& mounting) {
-    if (camera.has("position_m"))
-        mounting.position_m = Eigen::Vector3d(camera.numbers<3>("position_m", kPositionM).data());
-    if (camera.has("orientation_deg")) {
-        mounting.roll_pitch_yaw_rad =
-            Eigen::Vector3d(camera.numbers<3>("orientation_deg", kTurnDeg).data()) *
-            kRadiansPerDegree;
-    }
+    mounting.position_m = camera.vector_or("position_m", kPositionM);
+    mounting.roll_pitch_yaw_rad = camera.vector_or("orientation_deg", kTurnDeg) * kRadiansPerDegree;
 }
 
 // Keys used by surveys, not by renders.
@@ -459,27 +448,26 @@ Beam read_beam(Section section, RigFiles& files, std::string name, const Water& 
         }
     };
     Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
-    const std::vector<std::string> optics{"focal_length_mm", "distance_mm", "aperture_mm"};
-    if (section.has("table")) {
-        refuse_beside({"cones", "fwhm_deg", "diffuser_mm"}, kOneKindOfBeam);
-        refuse_beside(optics, kOneKindOfBeam);
+    const std::string_view kind =
+        section.refuse_both({"table", "diffuser_mm", "fwhm_deg", "cones"});
+    if (kind != "diffuser_mm") {
+        refuse_beside({"focal_length_mm", "distance_mm", "aperture_mm"},
+                      "found for a beam without a lens; allowed: with diffuser_mm");
+    }
+    if (kind == "table") {
         beam.pattern = read_beam_table(section, files);
         if (largest_intensity(std::get<BeamTable>(beam.pattern)) == 0.0) {
             section.found_but("table", "one with light in it");
         }
-    } else if (section.has("diffuser_mm")) {
-        refuse_beside({"cones", "fwhm_deg"}, kOneKindOfBeam);
+    } else if (kind == "diffuser_mm") {
         beam.pattern = read_optics(section);
-    } else if (section.has("fwhm_deg")) {
-        refuse_beside({"cones"}, kOneKindOfBeam);
-        refuse_beside(optics, kOneKindOfBeam);
+    } else if (kind == "fwhm_deg") {
         const double half_rad = 0.5 * section.number("fwhm_deg", kFwhmDeg) * kRadiansPerDegree;
         beam.cones = {{.part = "fwhm",
                        .half_angle_rad = 0.5 * std::numbers::pi,
                        .weight = 1.0,
                        .exponent = std::log(0.5) / std::log(std::cos(half_rad))}};
     } else {
-        refuse_beside(optics, kOneKindOfBeam);
         if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
             beam.weights = ConeWeights::Literal;
         }
@@ -488,7 +476,7 @@ Beam read_beam(Section section, RigFiles& files, std::string name, const Water& 
             beam.cones.push_back(read_cone(cone));
         }
     }
-    if (!section.has("cones")) {
+    if (kind != "cones") {
         refuse_beside({"weights"}, "found for a beam without cones; allowed: with cones");
     }
     if (beam.cones.empty()) {
@@ -603,10 +591,7 @@ Mesh read_mesh_of(Section& object, RigFiles& files) {
     const std::string allowed = "the name of a Wavefront .obj file beside the rig";
     const std::string name = object.text("file", allowed);
     if (!name.ends_with(".obj")) object.found_but("file", allowed);
-    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-    if (object.has("position_m")) {
-        position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
-    }
+    const Eigen::Vector3d position_m = object.vector_or("position_m", kPositionM);
     return object.at_key("file", [&] {
         const fs::path file = files.path_of(name);
         const std::string obj = files.read(name, kMostMeshBytes);

@@ -42,13 +42,6 @@ std::string_view without_heading(std::string_view text) {
     return text.substr(text.find("\n\n") + 1);
 }
 
-std::string_view next_line(std::string_view& text) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    return line;
-}
-
 // The text before the mark, without spaces; empty without a mark.
 std::string marked_value(std::string_view line) {
     const std::size_t mark = line.find(kMark);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -73,6 +74,13 @@ class Section {
             values[i] = *(*array)[i].template value<double>();
         }
         return values;
+    }
+
+    [[nodiscard]] Eigen::Vector3d vector_or(
+        std::string_view key,
+        Bounds bounds,
+        const Eigen::Vector3d& absent = Eigen::Vector3d::Zero()) {
+        return has(key) ? Eigen::Vector3d(numbers<3>(key, bounds).data()) : absent;
     }
 
     [[nodiscard]] std::string text(std::string_view key, const std::string& allowed);

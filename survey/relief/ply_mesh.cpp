@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/relief/ply_mesh.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/number_bytes.h"
@@ -48,18 +49,6 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 };
 
-std::vector<std::string_view> words_in(std::string_view line) {
-    constexpr std::string_view kBlank = " \t\r";
-    std::vector<std::string_view> words;
-    for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;
-         at = line.find_first_not_of(kBlank, at)) {
-        const std::size_t end = std::min(line.size(), line.find_first_of(kBlank, at));
-        words.push_back(line.substr(at, end - at));
-        at = end;
-    }
-    return words;
-}
-
 class PlyReader {
   public:
     PlyReader(const std::string& name, std::string_view ply, std::size_t most_triangles)
@@ -94,11 +83,8 @@ class PlyReader {
     }
 
     std::string_view take_line() {
-        const std::size_t end = rest_.find('\n');
-        if (end == std::string_view::npos) fail("the file ends within its header");
-        const std::string_view line = rest_.substr(0, end);
-        rest_.remove_prefix(end + 1);
-        return line;
+        if (rest_.find('\n') == std::string_view::npos) fail("the file ends within its header");
+        return next_line(rest_);
     }
 
     [[nodiscard]] const PlyType* type_named(std::string_view word, std::string_view line) const {
@@ -147,16 +133,14 @@ class PlyReader {
     }
 
     double take_word() {
-        constexpr std::string_view kBlank = " \t\r\n";
-        const std::size_t start = rest_.find_first_not_of(kBlank);
+        const std::size_t start = rest_.find_first_not_of(kBlanks);
         if (start == std::string_view::npos) refuse_end();
         rest_.remove_prefix(start);
-        const std::size_t end = std::min(rest_.size(), rest_.find_first_of(kBlank));
-        const std::string_view word = rest_.substr(0, end);
+        const std::string_view word = rest_.substr(0, rest_.find_first_of(kBlanks));
         const auto value = read_number<double>(word);
         if (!value)
             fail("found {} in {} {}; allowed: a number", shown_word(word), in_->name, place_ + 1);
-        rest_.remove_prefix(end);
+        rest_.remove_prefix(word.size());
         return *value;
     }
 

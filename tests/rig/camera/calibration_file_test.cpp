@@ -505,7 +505,7 @@ TEST(CalibrationFile, TellsWhatIsWrongWithKalibrs) {
         {with(kCamchain, "[800, 600]", "[800, 600, 3]"),
          "cam:7: cam0.resolution: found 3 numbers; allowed: 2"},
         {with(kCamchain, "[800, 600]", "[800, -600]"),
-         "cam:7: cam0.resolution: found -600; allowed: whole numbers from 1 to 16384"},
+         "cam:7: cam0.resolution: found -600; allowed: a whole number from 1 to 16384"},
         {with(kCamchain, "[700, 690, 405.25, 290.5]", "[700, [690], 405.25, 290.5]"),
          "cam:6: cam0.intrinsics: found nested lists; allowed: numbers"},
         {std::string(kCamchain) + "cam1:\n  camera_model: pinhole\n",

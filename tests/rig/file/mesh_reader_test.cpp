@@ -121,7 +121,7 @@ TEST(MeshReader, RefusesPolygonsOfMoreCornersThanItsLimit) {
               kMostCorners - 2);
     EXPECT_TRUE(error_of(polygon(kMostCorners + 1)).starts_with("rock.obj:258: found f 1 2 3 4 "));
     EXPECT_TRUE(error_of(polygon(kMostCorners + 1))
-                    .ends_with(" ...; allowed: f and 3 to 256 of the 257 vertices above it"));
+                    .ends_with("...; allowed: f and 3 to 256 of the 257 vertices above it"));
 }
 
 // By the shoelace formula; corners on one line, a corner twice.
