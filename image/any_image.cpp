@@ -47,17 +47,19 @@ std::map<std::string, std::string> header_of_image(const std::filesystem::path& 
 }
 
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
-    using Write = void (*)(const std::filesystem::path&, const WrittenImage&, std::string&);
+    using Encode = void (*)(const std::filesystem::path&,
+                            const WrittenImage&,
+                            std::vector<unsigned char>&,
+                            std::string&);
     require_plain_path(file);
-    AtomicFile destination(file);
+    std::vector<unsigned char> bytes;
     std::string fault;
-    from_part<Write>("aphotic_write_any_image")(destination.temporary(), image, fault);
+    from_part<Encode>("aphotic_encode_any_image")(file, image, bytes, fault);
     if (!fault.empty()) throw RunError("{}: cannot be written: {}", file.string(), fault);
     // OpenImageIO marks sRGB only in PNG and JPEG (any_image_oiio.cpp).
     const bool is_unmarked = image.is_srgb && file.extension().string().starts_with(".tif");
-    if (image.tags || is_unmarked)
-        add_image_tags(destination.temporary(), image.tags, is_unmarked, file);
-    destination.commit();
+    if (image.tags || is_unmarked) add_image_tags(file, bytes, image.tags, is_unmarked);
+    write_text_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::vector<float> resized(std::vector<float> plane,

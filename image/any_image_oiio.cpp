@@ -4,7 +4,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "image/any_image.h"
-#include "image/checked_file.h"
 #include "image/colour_profile.h"
 #include "image/decoded_size.h"
 #include "image/exr_header.h"
@@ -74,41 +73,6 @@ bool write_as(OIIO::ImageOutput& output, const aphotic::WrittenImage& image) {
     }
     return output.write_image(output.spec().format, pixels.data());
 }
-
-// Where the library writes.
-class WatchedFile : public OIIO::Filesystem::IOProxy {
-  public:
-    explicit WatchedFile(const std::filesystem::path& file)
-        : IOProxy(file.string(), Write), file_(file) {}
-
-    [[nodiscard]] const char* proxytype() const override { return "aphotic"; }
-    std::size_t write(const void* bytes, std::size_t count) override {
-        const std::size_t written = pwrite(bytes, count, m_pos);
-        m_pos += static_cast<std::int64_t>(written);
-        return written;
-    }
-    std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t at) override {
-        return file_.write(bytes, count, at) ? count : 0;
-    }
-    std::size_t read(void* bytes, std::size_t count) override {
-        const std::size_t many = pread(bytes, count, m_pos);
-        m_pos += static_cast<std::int64_t>(many);
-        return many;
-    }
-    std::size_t pread(void* bytes, std::size_t count, std::int64_t at) override {
-        return file_.read(bytes, count, at);
-    }
-    [[nodiscard]] std::size_t size() const override { return file_.size(); }
-
-    // The system's error message, or empty.
-    [[nodiscard]] std::string end() {
-        file_.close();
-        return file_.error();
-    }
-
-  private:
-    aphotic::CheckedFile file_;
-};
 
 void compress(OIIO::ImageSpec& spec, aphotic::Compression compression) {
     using aphotic::Compression;
@@ -273,11 +237,13 @@ static aphotic::ColourProfile profile_of(const aphotic::WrittenImage& image) {
     return image.is_srgb ? aphotic::ColourProfile::Srgb : aphotic::ColourProfile::Linear;
 }
 
-// The reason why it could not be written, or empty.
-static std::string written(const std::filesystem::path& file, const aphotic::WrittenImage& image) {
-    WatchedFile watched(file);
+// The reason why it could not be encoded, or empty.
+static std::string encoded(const std::filesystem::path& file,
+                           const aphotic::WrittenImage& image,
+                           std::vector<unsigned char>& bytes) {
+    OIIO::Filesystem::IOVecOutput made(bytes);
     const std::unique_ptr<OIIO::ImageOutput> output =
-        OIIO::ImageOutput::create(file.string(), &watched);
+        OIIO::ImageOutput::create(file.string(), &made);
     if (!output) return OIIO::geterror();
     const bool is_bytes = image.type == aphotic::SampleType::Bits8;
     OIIO::ImageSpec spec(image.width_px,
@@ -312,16 +278,15 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
                                     : write_as<std::uint16_t>(*output, image)) &&
                           output->close();
     std::string fault = output->geterror();
-    std::string cause = watched.end();
-    if (!cause.empty()) return cause;
     if (is_whole) return "";
     return fault.empty() ? "the library gives no reason" : fault;
 }
 
-extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
-                                        const aphotic::WrittenImage& image,
-                                        std::string& fault) {
-    fault = written(file, image);
+extern "C" void aphotic_encode_any_image(const std::filesystem::path& file,
+                                         const aphotic::WrittenImage& image,
+                                         std::vector<unsigned char>& bytes,
+                                         std::string& fault) {
+    fault = encoded(file, image, bytes);
 }
 
 extern "C" void aphotic_resize(std::vector<float>& plane,

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/exr.h"
 
-#include "image/checked_file.h"
 #include "image/exr_header.h"
 #include "image/row_blocks.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cstdint>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
 
 namespace aphotic {
@@ -142,40 +142,26 @@ std::vector<float> ExrReader::planes(std::span<const std::string> channels) {
     }
 }
 
-// OpenEXR's output stream; exceptions from here become OpenEXR's own, except when it closes a file.
-class CheckedStream : public Imf::OStream {
-  public:
-    CheckedStream(const fs::path& file, const fs::path& called)
-        : OStream(called.c_str()), file_(file) {}
-
-    void write(const char bytes[], int count) override {
-        const auto many = static_cast<std::size_t>(count);
-        if (!file_.write(bytes, many, static_cast<std::int64_t>(at_)))
-            throw std::runtime_error(file_.error());
-        at_ += many;
+bool is_traced(const fs::path& image) {
+    try {
+        return ExrReader(image).attribute(kRendererAttribute) == kReferenceTracer;
+    } catch (const RunError&) {
+        return false;
     }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t at) override { at_ = at; }
-
-    void close() { file_.close(); }
-    [[nodiscard]] std::string error() const { return file_.error(); }
-
-  private:
-    CheckedFile file_;
-    std::uint64_t at_ = 0;
-};
+}
 
 struct ExrWriter::File {
-    File(const fs::path& file, const fs::path& called) : stream(file, called) {}
+    File(const fs::path& file, const fs::path& called)
+        : disk(file, std::ios::binary), stream(disk, called.c_str()) {}
 
     // The system's message comes before OpenEXR's.
-    [[noreturn]] void fail(const fs::path& called, const std::exception& why) const {
-        const std::string cause = stream.error();
+    [[noreturn]] void fail(const fs::path& called, const char* why) const {
         throw RunError(
-            "{}: cannot be written: {}", called.string(), cause.empty() ? why.what() : cause);
+            "{}: cannot be written: {}", called.string(), disk ? why : std::strerror(errno));
     }
 
-    CheckedStream stream;
+    std::ofstream disk;
+    Imf::StdOFStream stream;
     std::optional<Imf::OutputFile> out{};
 };
 
@@ -207,10 +193,11 @@ ExrWriter::ExrWriter(const fs::path& file,
     header.insert("software", Imf::StringAttribute("Aphotic " APHOTIC_VERSION));
     for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
     file_ = std::make_unique<File>(destination_.temporary(), file);
+    if (!file_->disk) file_->fail(file, "");
     try {
         file_->out.emplace(file_->stream, header);
     } catch (const std::exception& error) {
-        file_->fail(file, error);
+        file_->fail(file, error.what());
     }
 }
 
@@ -225,7 +212,7 @@ void ExrWriter::write_rows(int rows, std::span<const float> samples) {
         file_->out->setFrameBuffer(planar_rows(channels_, width_px_, 0, next_row_, rows, bytes));
         file_->out->writePixels(rows);
     } catch (const std::exception& error) {
-        file_->fail(destination_.final_path(), error);
+        file_->fail(destination_.final_path(), error.what());
     }
     next_row_ += rows;
 }
@@ -235,11 +222,8 @@ void ExrWriter::finish() {
     // Closing writes the table of block offsets, and OpenEXR does not report its failure, as on a
     // full disk.
     file_->out.reset();
-    file_->stream.close();
-    if (!file_->stream.error().empty()) {
-        throw RunError(
-            "{}: cannot be written: {}", destination_.final_path().string(), file_->stream.error());
-    }
+    file_->disk.close();
+    if (!file_->disk) file_->fail(destination_.final_path(), "");
     file_.reset();
     destination_.commit();
 }

@@ -63,6 +63,14 @@ auto from_named_exr(const std::filesystem::path& file, const Read& read) {
     }
 }
 
+// The attribute by which images of the reference tracer say so: compared with the reference, they
+// would be compared with themselves.
+inline constexpr const char* kRendererAttribute = "aphotic:renderer";
+inline constexpr const char* kReferenceTracer = "reference tracer";
+
+// False if there is no such file or it cannot be read, which others report.
+[[nodiscard]] bool is_traced(const std::filesystem::path& image);
+
 using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 
 // Float samples, ZIP or ZIPS (row_blocks.h). The file appears under its name when finish() has

@@ -14,15 +14,13 @@ SharedTags read_image_tags(const std::filesystem::path& file) {
 }
 
 void add_image_tags(const std::filesystem::path& file,
+                    std::vector<unsigned char>& image,
                     const SharedTags& tags,
-                    bool is_srgb,
-                    const std::filesystem::path& called) {
-    using Add = void (*)(const std::filesystem::path&, const ImageTags*, bool, std::string&);
+                    bool is_srgb) {
+    using Add = void (*)(std::vector<unsigned char>&, const ImageTags*, bool, std::string&);
     std::string fault;
-    from_part<Add>("aphotic_add_image_tags")(file, tags.get(), is_srgb, fault);
-    if (fault.empty()) return;
-    throw RunError(
-        "{}: its tags cannot be written: {}", (called.empty() ? file : called).string(), fault);
+    from_part<Add>("aphotic_add_image_tags")(image, tags.get(), is_srgb, fault);
+    if (!fault.empty()) throw RunError("{}: its tags cannot be written: {}", file.string(), fault);
 }
 
 std::vector<std::pair<std::string, std::string>> words_of(const ImageTags& tags) {

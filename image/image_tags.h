@@ -23,12 +23,12 @@ using SharedTags = std::shared_ptr<const ImageTags>;
 // Null if the file has no readable metadata.
 [[nodiscard]] SharedTags read_image_tags(const std::filesystem::path& file);
 
-// Adds these tags, if any, to those of a TIFF, PNG or JPEG, and marks its samples as sRGB. A
-// RunError if it cannot be written, with the file's final name if that differs.
+// Adds these tags, if any, to those in the bytes of a TIFF, PNG or JPEG, and marks its samples as
+// sRGB. A RunError if they are none, with the name of their file.
 void add_image_tags(const std::filesystem::path& file,
+                    std::vector<unsigned char>& image,
                     const SharedTags& tags,
-                    bool is_srgb = false,
-                    const std::filesystem::path& called = {});
+                    bool is_srgb = false);
 
 // As names and values, such as Exif.GPSInfo.GPSLatitude and "41/1 30/1 444442/10000".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(const ImageTags& tags);

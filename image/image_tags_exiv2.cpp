@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The part of the command that links Exiv2; see image_tags.h.
-#include "image/checked_file.h"
 #include "image/decoded_size.h"
 #include "image/image_tags.h"
 
@@ -183,37 +182,34 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
     }
 }
 
-// The reason why it could not be written, or empty. In memory, since Exiv2 does not report a full
-// disk.
-static std::string tagged(const std::filesystem::path& file,
+// The reason why tags could not be added, or empty.
+static std::string tagged(std::vector<unsigned char>& bytes,
                           const aphotic::ImageTags* tags,
                           bool is_srgb) {
     using namespace aphotic;
     try {
         make_ready();
-        const Exiv2::DataBuf bytes = Exiv2::readFile(file.string());
         const std::unique_ptr<Exiv2::Image> image(
-            Exiv2::ImageFactory::open(bytes.pData_, bytes.size_).release());
+            Exiv2::ImageFactory::open(bytes.data(), static_cast<long>(bytes.size())).release());
         image->readMetadata();
         if (tags != nullptr) put(*tags, *image);
         if (is_srgb) image->exifData()["Exif.Photo.ColorSpace"] = std::uint16_t{1};
         image->writeMetadata();
         Exiv2::BasicIo& made = image->io();
         if (made.open() != 0) return "no data";
-        CheckedFile out(file);
-        out.write(made.mmap(), made.size(), 0);
-        out.close();
-        return out.error();
+        bytes.resize(static_cast<std::size_t>(made.size()));
+        std::copy_n(made.mmap(), bytes.size(), bytes.begin());
+        return "";
     } catch (const std::exception& error) {
         return error.what();
     }
 }
 
-extern "C" void aphotic_add_image_tags(const std::filesystem::path& file,
+extern "C" void aphotic_add_image_tags(std::vector<unsigned char>& bytes,
                                        const aphotic::ImageTags* tags,
                                        bool is_srgb,
                                        std::string& fault) {
-    fault = tagged(file, tags, is_srgb);
+    fault = tagged(bytes, tags, is_srgb);
 }
 
 extern "C" void aphotic_words_of_tags(const aphotic::ImageTags& tags,

@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/work_folder.h"
+#include "image/exr.h"
 #include "image/frame_check.h"
 #include "image/png_frame.h"
-#include "image/traced_image.h"
 #include "scene_gen/user_scene.h"
 #include "scene_gen/veil_planes.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/traced_images.h"
 
+#include "image/exr.h"
 #include "image/row_blocks.h"
-#include "image/traced_image.h"
 
 #include <algorithm>
 

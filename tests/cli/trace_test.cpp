@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic trace beside renders: its images are never taken for POV-Ray's.
-#include "image/traced_image.h"
+#include "image/exr.h"
 #include "support/command_test.h"
 #include "support/small_scene.h"
 
