@@ -129,12 +129,6 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
     return model_error(rig, options.input.rig, options.model_tolerance, "--altitude");
 }
 
-void expect_size_of(const LightAt& light, CameraNumbers& camera) {
-    if (!camera.expected) camera.expected.emplace();
-    camera.expected->image = light.size;
-    camera.expected->as = "like the map";
-}
-
 // The request, and for water that scatters the model error.
 struct Task {
     Survey survey;
@@ -156,7 +150,7 @@ Task map_task(const CorrectCommandOptions& options) {
     const auto& expected = survey.camera.expected;
     survey.light = light_of_map(
         options.map, !options.no_veil, expected ? std::optional(expected->image) : std::nullopt);
-    expect_size_of(survey.light, survey.camera);
+    expect(survey.camera, survey.light.size, "like the map");
     return {.survey = std::move(survey)};
 }
 
@@ -164,9 +158,8 @@ Task rig_task(const CorrectCommandOptions& options) {
     const std::string& file = options.input.rig;
     Rig rig = read_plausible_rig(file, options.input.strict);
     Survey survey = read_survey(options.input, options.correction.run.folder, &rig);
-    const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
-    require_whole_view(survey.files, survey.camera, rig.camera);
-    const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
+    require_whole_view(survey.camera, rig.camera);
+    const std::optional<PlaneSize> own = fit_to(survey.camera, rig.camera);
     survey.navigation = navigation_of(options.input, survey.files, rig);
     survey.depth = depth_of(options.input, survey.navigation);
     const bool has_relief = survey.depth.has_value();
@@ -178,7 +171,7 @@ Task rig_task(const CorrectCommandOptions& options) {
     survey.strobes = strobes_of_rig(
         rig, survey.navigation, survey.files, !options.no_veil, options.tolerance, has_relief);
     survey.light.rig_size = own;
-    expect_size_of(survey.light, survey.camera);
+    expect(survey.camera, survey.light.size, "like the map");
     const auto model = model_error_of(options, rig, survey);
     return {.survey = std::move(survey), .model = model, .readout = rig.camera.readout};
 }

@@ -2,6 +2,7 @@
 //
 // aphotic observe IMAGES... --nav FILE -o MAP.exr: averages the images of one altitude into their
 // common pattern of light.
+#include "base/degrees.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
@@ -19,7 +20,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 namespace aphotic::cli {
@@ -32,8 +32,7 @@ struct ObserveCommandOptions {
 };
 
 std::string angle_words(double radians) {
-    return std::isnan(radians) ? "unknown"
-                               : fmt::format("{:.2f} deg", radians * 180.0 / std::numbers::pi);
+    return std::isnan(radians) ? "unknown" : fmt::format("{:.2f} deg", radians / kRadiansPerDegree);
 }
 
 void print_observation(const Observation& observation, const std::string& map_file) {
@@ -57,8 +56,7 @@ void print_observation(const Observation& observation, const std::string& map_fi
 // The camera's rays, for the view of a mesh.
 void look_at_mesh(Survey& survey, std::optional<Rig> rig) {
     if (!rig) throw InputError("--relief needs --rig, which has the camera's rays");
-    if (const auto images = usual_size(survey.files, survey.camera))
-        static_cast<void>(fit_to(rig->camera, *images));
+    fit_to(survey.camera, rig->camera);
     survey.light.size = {rig->camera.width_px, rig->camera.height_px};
     survey.light.relief =
         std::make_shared<const ReliefMapMaker>(*rig, LightmapOptions{.has_veil = false});

@@ -231,9 +231,7 @@ FitSamples samples_of_images(const Survey& survey,
     samples.places = fit_places(size.width_px, size.height_px, blocks_across);
     samples.mosaic = survey.camera.mosaic.value_or(Mosaic::None);
     CameraNumbers numbers = survey.camera;
-    if (!numbers.expected) numbers.expected.emplace();
-    numbers.expected->image = size;
-    numbers.expected->as = "like the rig's camera";
+    expect(numbers, size, "like the rig's camera");
     samples.looks_wrong = suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
     std::vector<LightCells> cells;
     std::vector<std::size_t> files;  // by image

@@ -178,14 +178,6 @@ std::optional<PlaneSize> usual_file_size(const std::vector<ImageFile>& files) {
 
 }  // namespace
 
-std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
-                                    const CameraNumbers& camera) {
-    const std::optional<PlaneSize> file = usual_file_size(files);
-    if (!file) return std::nullopt;
-    const Crop crop = crop_of(camera, *file);
-    return PlaneSize{crop.width_px, crop.height_px};
-}
-
 CameraNumbers expecting_usual_size(CameraNumbers camera, const std::vector<ImageFile>& files) {
     const std::optional<PlaneSize> file = usual_file_size(files);
     if (!file) return camera;
@@ -194,6 +186,11 @@ CameraNumbers expecting_usual_size(CameraNumbers camera, const std::vector<Image
                                    .as = "like most of the images examined",
                                    .file = *file};
     return camera;
+}
+
+void expect(CameraNumbers& camera, PlaneSize image, std::string as) {
+    const PlaneSize file = camera.expected ? camera.expected->file : PlaneSize{};
+    camera.expected = {.image = image, .as = std::move(as), .file = file};
 }
 
 CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>& files) {
@@ -212,15 +209,11 @@ CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>&
                      camera.exposure_by == ExposureBy::Exif ? "ExposureTime, " : "");
 }
 
-void require_whole_view(const std::vector<ImageFile>& files,
-                        const CameraNumbers& camera,
-                        const Camera& rig) {
-    if (!camera.crop) return;
-    CameraNumbers uncropped = camera;
-    uncropped.crop.reset();
-    const std::optional<PlaneSize> file = usual_size(files, uncropped);
+void require_whole_view(const CameraNumbers& camera, const Camera& rig) {
+    if (!camera.crop || !camera.expected) return;
+    const PlaneSize file = camera.expected->file;
     const Crop& crop = *camera.crop;
-    if (!file || file->width_px != rig.width_px || file->height_px != rig.height_px) return;
+    if (file.width_px != rig.width_px || file.height_px != rig.height_px) return;
     if (crop.width_px == rig.width_px && crop.height_px == rig.height_px) return;
     throw InputError(
         "--crop: found {} x {} of files that have the rig's {} x {} pixels; allowed: a part that "
@@ -231,15 +224,17 @@ void require_whole_view(const std::vector<ImageFile>& files,
         rig.height_px);
 }
 
-std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images) {
-    const PlaneSize rig{camera.width_px, camera.height_px};
-    if (rig.width_px == images.width_px) return std::nullopt;
+std::optional<PlaneSize> fit_to(const CameraNumbers& camera, Camera& rig) {
+    if (!camera.expected) return std::nullopt;
+    const PlaneSize images = camera.expected->image;
+    const PlaneSize own{rig.width_px, rig.height_px};
+    if (own.width_px == images.width_px) return std::nullopt;
     if (std::max(images.width_px, images.height_px) > kLargestImagePx) return std::nullopt;
-    Camera scaled = camera;
+    Camera scaled = rig;
     scale_to_width(scaled, images.width_px);
     if (scaled.height_px != images.height_px) return std::nullopt;
-    camera = std::move(scaled);
-    return rig;
+    rig = std::move(scaled);
+    return own;
 }
 
 }  // namespace aphotic

@@ -95,15 +95,14 @@ struct CameraNumbers {
 // What a survey's files state about its camera before any is corrected: the size of their images,
 // and the exposure to which the others are brought. A rig is scaled to that size.
 
-// The most common size after cropping among a few images, evenly spread over the survey; in a tie
-// the smallest, since a wrong large one costs more. If none of these can be read, the size of the
-// first readable image, if any. An InputError if the crop does not fit.
-[[nodiscard]] std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
-                                                  const CameraNumbers& camera);
-
-// With that size expected of every image, if known; an InputError as above.
+// Expecting of every image the most common size after cropping among a few images, evenly spread
+// over the survey; in a tie the smallest, since a wrong large one costs more. If none of these can
+// be read, the size of the first readable image, if any. An InputError if the crop does not fit.
 [[nodiscard]] CameraNumbers expecting_usual_size(CameraNumbers camera,
                                                  const std::vector<ImageFile>& files);
+
+// This size instead, as that of a map or a rig.
+void expect(CameraNumbers& camera, PlaneSize image, std::string as);
 
 // With the exposure of the first image that has one, if no reference was given. An InputError if no
 // image has one.
@@ -112,13 +111,11 @@ struct CameraNumbers {
 
 // An InputError if a crop is only a part of the rig's own image: a rig describes everything in the
 // crop, such as one of two cameras' images in a file.
-void require_whole_view(const std::vector<ImageFile>& files,
-                        const CameraNumbers& camera,
-                        const Camera& rig);
+void require_whole_view(const CameraNumbers& camera, const Camera& rig);
 
-// Changes a camera's number of pixels but not its view, if the shape is the same to the nearest
-// row, as after --scale, and returns its former size. Empty, and the camera unchanged, if the
-// number is the same or the shape differs.
-[[nodiscard]] std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images);
+// Changes a rig camera's number of pixels to that expected of images, but not its view, if the
+// shape is the same to the nearest row, as after --scale, and returns its former size. Empty, and
+// the rig's camera unchanged, if the number is the same or unknown, or the shape differs.
+std::optional<PlaneSize> fit_to(const CameraNumbers& camera, Camera& rig);
 
 }  // namespace aphotic
