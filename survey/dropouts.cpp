@@ -63,10 +63,6 @@ class CellMeans {
     Cell* row_ = nullptr;
 };
 
-double median_of(std::vector<double> numbers) {
-    return upper_median(numbers);
-}
-
 // use(size, d): for cells of 2 x 2, then of 4 x 4 and so on.
 template <typename Use>
 void for_details(CellPlane z, std::size_t side, const Use& use) {
@@ -319,16 +315,16 @@ DropoutScales learned(std::span<const LightCells> images, bool level_is_free) {
         }
         if (levels.empty()) return {};
         scales.images = levels.size();
-        const double middle = median_of(levels);
+        const double middle = upper_median(levels);
         for (double& level : levels) level = std::abs(level - middle);
         scales.level += middle;
         if (!level_is_free)
             scales.spread =
-                std::max(are_few ? kFloorSpread : kLeastScale, median_of(levels) / kMedianOfT4);
+                std::max(are_few ? kFloorSpread : kLeastScale, upper_median(levels) / kMedianOfT4);
         for (std::size_t size = 0; size < details.size(); ++size) {
             if (details[size].empty()) continue;
             scales.detail[size] = std::max(are_few ? kFewDetail : kLeastScale,
-                                           median_of(details[size]) / kMedianOfT2);
+                                           upper_median(details[size]) / kMedianOfT2);
         }
     }
     return scales;

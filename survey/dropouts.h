@@ -6,7 +6,7 @@
 //   m_k = e S_Ak (1 + x_k),    S_A = sum of the S_s of A,    level = ln(e / E)
 //   z_k(A) = ln(m_k / e + s) - ln(S_Ak + s)
 //
-// m    mean of a cell's green samples over black        S_s  light of strobe s alone (strobes_at.h)
+// m    mean of a cell's green samples over black        S_s  light of strobe s alone (light_at.h)
 // e    the image's exposure times its floor's brightness: the median of m_k / S_Ak
 // E    the survey's: the median of e over its images    s    kStray of the brightest light
 //

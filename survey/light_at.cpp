@@ -6,6 +6,8 @@
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "lightmap/cone_edge.h"
+#include "lightmap/design.h"
+#include "lightmap/planes.h"
 #include "spectral/light_family.h"
 #include "survey/survey_check.h"
 
@@ -13,8 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <type_traits>
 
 namespace aphotic {
 namespace {
@@ -89,6 +94,11 @@ void require_map_for(PlaneSize images, const ExrReader& map, const std::filesyst
                      images.height_px);
 }
 
+// Down and back.
+double path_of_own_altitude(const Rig& rig) {
+    return 2.0 * rig.sled.altitude_m;
+}
+
 // The light of all lamps, relative, after this path through the water.
 std::function<double(double)> light_after(const Rig& rig, double path_m) {
     return [&rig, path_m](double lambda_nm) {
@@ -100,28 +110,58 @@ std::function<double(double)> light_after(const Rig& rig, double path_m) {
     };
 }
 
-// Down and back at the rig's own altitude.
-std::function<double(double)> light_on_its_way(const Rig& rig) {
-    return light_after(rig, 2.0 * rig.sled.altitude_m);
+constexpr int kCoarse_px = 4 * kCells;  // along the longer side
+constexpr double kCoarseError = 1e-3;
+constexpr double kCoarseVeil = 1e-2;
+
+// A maker of maps for each subset of the strobes, created on first use by make(rig with these).
+template <typename Make>
+auto makers_of_lit(const Rig& rig, const Make& make) {
+    using Maker = std::invoke_result_t<Make, const Rig&>;
+    struct Made {
+        std::mutex mutex;
+        std::map<std::uint64_t, Maker> makers;
+    };
+    return [made = std::make_shared<Made>(), rig, make](std::uint64_t out) {
+        const std::scoped_lock lock(made->mutex);
+        Maker& maker = made->makers[out];
+        if (maker) return maker;
+        Rig lit = rig;
+        lit.strobes.clear();
+        for (std::size_t s = 0; s < rig.strobes.size(); ++s)
+            if ((out >> s & 1U) == 0) lit.strobes.push_back(rig.strobes[s]);
+        return maker = make(lit);
+    };
 }
 
-// The share of the light that the floor returns, relative to a white floor, by channel.
-struct GivenBack {
-    const Rig& rig;
-    PerChannel of_floor{};
-    PerChannel of_white{};
+using ReliefMakers = std::vector<std::unique_ptr<const ReliefMapMaker>>;
 
-    void add(double lambda_nm, std::size_t channel, double seen) {
-        of_white[channel] += seen;
-        of_floor[channel] += seen * rig.seafloor.reflectance.at(lambda_nm);
-    }
-    [[nodiscard]] PerChannel share() const {
-        PerChannel share{};
-        for (std::size_t c = 0; c < kChannels; ++c)
-            share[c] = of_white[c] > 0.0 ? of_floor[c] / of_white[c] : 0.0;
-        return share;
-    }
-};
+void add_relief(const Rig& rig,
+                const std::vector<RigPart>& parts,
+                const LightmapOptions& coarse,
+                const LightmapOptions& options,
+                StrobesAt& at) {
+    const auto makers = std::make_shared<ReliefMakers>();
+    for (const RigPart& part : parts)
+        makers->push_back(std::make_unique<const ReliefMapMaker>(part.rig, coarse));
+    const Camera& camera = parts.front().rig.camera;
+    at.relief_cells =
+        [makers,
+         width_px = camera.width_px,
+         height_px = camera.height_px,
+         side = cells_across(rig.camera.width_px, rig.camera.height_px)](
+            const DepthMap& map, const DepthMaps& as, const std::optional<Sled>& floor) {
+            const FloorRelief relief = floor_relief(
+                resized(map, width_px, height_px), as.is, as.normals, *makers->front(), floor);
+            std::vector<CellPlane> cells;
+            for (const auto& maker : *makers)
+                cells.push_back(cells_of(maker->map(relief.relief, 0).map, side));
+            return cells;
+        };
+    at.relief_without = makers_of_lit(rig, [options](const Rig& lit) {
+        return std::make_shared<const ReliefMapMaker>(lit, options);
+    });
+}
 
 }  // namespace
 
@@ -173,7 +213,39 @@ LightAt light_of_rig(const Rig& rig,
             .to_srgb = rig.camera.sensor.is_mono() ? std::function<CameraToSrgb()>()
                                                    : [rig] { return camera_to_srgb(rig); },
             .floor_colour = floor_colour(rig),
-            .floor_colour_in_water = floor_colour_in_water(rig)};
+            .floor_colour_in_water = floor_colour(rig, path_of_own_altitude(rig))};
+}
+
+StrobesAt strobes_of_rig(const Rig& rig,
+                         const std::optional<Navigation>& navigation,
+                         const std::vector<ImageFile>& files,
+                         bool has_veil,
+                         double veil_tolerance,
+                         bool has_relief) {
+    if (rig.strobes.size() > kMostStrobes) return {};
+    const PathRange paths = paths_of_survey(rig, sleds_of(navigation, files));
+    const Rig coarse = with_longer_side(rig, kCoarse_px);
+    const auto makers = std::make_shared<std::vector<LightmapMaker>>();
+    StrobesAt at;
+    const std::vector<RigPart> parts = parts_by_strobe(coarse);
+    const LightmapOptions as_coarse{
+        .error = kCoarseError, .has_veil = has_veil, .veil_tolerance = kCoarseVeil};
+    for (const RigPart& part : parts) {
+        at.names.push_back(part.name);
+        makers->emplace_back(part.rig, paths, as_coarse);
+    }
+    at.cells = [makers,
+                side = cells_across(rig.camera.width_px, rig.camera.height_px)](const Sled& sled) {
+        std::vector<CellPlane> cells;
+        for (const LightmapMaker& maker : *makers) cells.push_back(cells_of(maker.map(sled), side));
+        return cells;
+    };
+    const LightmapOptions options{.has_veil = has_veil, .veil_tolerance = veil_tolerance};
+    at.map_without = [lit = makers_of_lit(rig, [paths, options](const Rig& of) {
+                          return std::make_shared<const LightmapMaker>(of, paths, options);
+                      })](const Sled& sled, std::uint64_t out) { return lit(out)->map(sled); };
+    if (has_relief) add_relief(rig, parts, as_coarse, options, at);
+    return at;
 }
 
 void require_light_for(const RawImage& raw, const LightAt& light) {
@@ -220,36 +292,32 @@ LightAt light_of_map(const std::filesystem::path& map_file,
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); }};
 }
 
-PerChannel floor_colour(const Rig& rig) {
+PerChannel floor_colour(const Rig& rig, double path_m) {
     constexpr double kError = 1e-6;
-    LightFamily family{.water = rig.water, .shortest_path_m = 0.0, .longest_path_m = 0.0};
+    LightFamily family{.water = rig.water, .shortest_path_m = path_m, .longest_path_m = path_m};
     for (const Strobe& strobe : rig.strobes) {
         family.sources.push_back({strobe.spectrum});
         family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});
     }
-    const auto light = light_after(rig, 0.0);
-    GivenBack given{rig};
+    const auto light = light_after(rig, path_m);
+    PerChannel of_floor{};
+    PerChannel of_white{};
     for (const WeightedWavelength& w :
          reference_grid(rig.camera.sensor, family, rig.camera.range, kError)) {
-        const double flux = light(w.lambda_nm);
-        for (std::size_t c = 0; c < kChannels; ++c) given.add(w.lambda_nm, c, flux * w.weight[c]);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double seen = light(w.lambda_nm) * w.weight[c];
+            of_white[c] += seen;
+            of_floor[c] += seen * rig.seafloor.reflectance.at(w.lambda_nm);
+        }
     }
-    return given.share();
+    for (std::size_t c = 0; c < kChannels; ++c)
+        of_floor[c] = of_white[c] > 0.0 ? of_floor[c] / of_white[c] : 0.0;
+    return of_floor;
 }
 
 CameraToSrgb camera_to_srgb(const Rig& rig) {
-    return camera_to_srgb(rig.camera.sensor, rig.camera.range, light_on_its_way(rig));
-}
-
-PerChannel floor_colour_in_water(const Rig& rig) {
-    const auto light = light_on_its_way(rig);
-    GivenBack given{rig};
-    for (double nm = std::ceil(rig.camera.range.first_nm); nm <= rig.camera.range.last_nm; ++nm) {
-        for (int c = 0; c < kChannels; ++c)
-            given.add(
-                nm, static_cast<std::size_t>(c), light(nm) * rig.camera.sensor.response(c, nm));
-    }
-    return given.share();
+    return camera_to_srgb(
+        rig.camera.sensor, rig.camera.range, light_after(rig, path_of_own_altitude(rig)));
 }
 
 }  // namespace aphotic

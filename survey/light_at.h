@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The light in which an image of a survey was taken: from a rig at the image's own altitude and
-// attitude, or one map for all.
+// attitude, of all its strobes or each; or one map for all.
 #pragma once
 
 #include "image/any_image.h"
@@ -10,8 +10,10 @@
 #include "rig/rig.h"
 #include "spectral/camera_to_srgb.h"
 #include "survey/correction.h"
+#include "survey/dropouts.h"
 #include "survey/images/image_files.h"
 #include "survey/navigation/navigation.h"
+#include "survey/relief/floor_relief.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -67,6 +69,30 @@ inline constexpr double kVeilOfCorrection = 1e-3;
                                    double veil_tolerance = kVeilOfCorrection,
                                    bool has_relief = false);
 
+// The light of each strobe of a rig: in cells (survey/dropouts.h), from small lightmaps, to detect
+// which strobes fired; and for those that did, at every pixel. The light of strobes adds up, so
+// that of one strobe is the lightmap of a rig that has no other.
+struct StrobesAt {
+    std::vector<std::string> names{};
+    // These are called from several threads.
+    std::function<std::vector<CellPlane>(const Sled& sled)> cells{};  // by strobe; empty: unknown
+    // Without the strobes whose bits are set, at most all but one.
+    std::function<Lightmap(const Sled& sled, std::uint64_t out)> map_without{};
+    // The same for images with depth maps.
+    std::function<std::vector<CellPlane>(
+        const DepthMap&, const DepthMaps&, const std::optional<Sled>&)>
+        relief_cells{};
+    std::function<std::shared_ptr<const ReliefMapMaker>(std::uint64_t out)> relief_without{};
+};
+
+// For the poses of these images, as in light_of_rig(). Empty for a rig of more than kMostStrobes.
+[[nodiscard]] StrobesAt strobes_of_rig(const Rig& rig,
+                                       const std::optional<Navigation>& navigation,
+                                       const std::vector<ImageFile>& files,
+                                       bool has_veil = true,
+                                       double veil_tolerance = kVeilOfCorrection,
+                                       bool has_relief = false);
+
 // An InputError unless its maps match such an image: its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);
 
@@ -77,15 +103,14 @@ void require_light_for(const RawImage& raw, const LightAt& light);
                                    bool has_veil = true,
                                    std::optional<PlaneSize> images = std::nullopt);
 
-// The share of the lamps' own light, without water, that the rig's floor returns to each channel:
-//   int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
-[[nodiscard]] PerChannel floor_colour(const Rig& rig);
+// The share of the lamps' light, after a path l through the water, that the rig's floor returns to
+// each channel:
+//   int sum_s P_s Phi_s exp(-K l) rho Q_c dlambda / int sum_s P_s Phi_s exp(-K l) Q_c dlambda.
+// Without a path, it is that of their own light.
+[[nodiscard]] PerChannel floor_colour(const Rig& rig, double path_m = 0.0);
 
 // For the rig's camera, in the light of its lamps after the path to the floor and back at the rig's
 // own altitude.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Rig& rig);
-
-// The floor's colour in that light.
-[[nodiscard]] PerChannel floor_colour_in_water(const Rig& rig);
 
 }  // namespace aphotic

@@ -8,7 +8,6 @@
 #include "survey/light_at.h"
 #include "survey/navigation/navigation.h"
 #include "survey/relief/floor_relief.h"
-#include "survey/strobes_at.h"
 
 #include <optional>
 #include <vector>

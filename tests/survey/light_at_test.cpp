@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The light of an image of a survey in water that scatters: what a correction subtracts, against
-// the same map to a tolerance at which its pixels are computed one by one.
+// the same map to a tolerance at which its pixels are computed one by one. And the light of each
+// strobe.
 #include "survey/light_at.h"
+#include "support/scene_text.h"
 
 #include "rig/file/rig_reader.h"
 #include "survey/correction.h"
@@ -108,6 +110,25 @@ TEST(LightAt, TellsTheToleranceOfAVeilItHas) {
     Rig clear = rig;
     clear.water.scatterers.clear();
     EXPECT_FALSE(light_of_rig(clear, navigation, kFiles).veil_tolerance);
+}
+
+// Light adds up: that of each strobe is what the whole map has more than that of the others.
+TEST(LightAt, OfAStrobeIsWhatTheMapHasMoreThanThatOfTheOthers) {
+    const Rig rig = read_rig(scene_file("survey/smooth.toml"));
+    const Sled sled{.altitude_m = 2.0, .pitch_rad = 0.05, .roll_rad = -0.03};
+    const Navigation navigation("flown", {{.image = "a", .sled = sled}});
+    const std::vector<ImageFile> files{{.source = "a.tif", .name = "a.tif"}};
+    const StrobesAt strobes = strobes_of_rig(rig, navigation, files);
+    ASSERT_EQ(strobes.names, (std::vector<std::string>{"fore", "aft", "port", "starboard"}));
+    const std::vector<CellPlane> cells = strobes.cells(sled);
+    const LightmapMaker maker(rig, paths_of(rig, {sled}), {});
+    const CellPlane all = cells_of(maker.map(sled), kCells);
+    constexpr double kCoarse = 5e-3;  // the middles of 4 x 3 coarse pixels for a cell's own
+    for (std::size_t s = 0; s < 4; ++s) {
+        const CellPlane rest = cells_of(strobes.map_without(sled, 1U << s), kCells);
+        for (std::size_t k = 0; k < all.size(); ++k)
+            ASSERT_NEAR(all[k] - rest[k], cells[s][k], kCoarse * all[k]) << s << " " << k;
+    }
 }
 
 }  // namespace
