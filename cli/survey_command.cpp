@@ -411,7 +411,7 @@ void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folde
 void print_doubts(const RunOutcome& outcome) {
     constexpr double kPercent = 100.0;
     std::vector<std::string> shares;
-    for (const auto& [name, bit] : kDoubts)
+    for (const auto& [name, bit, words] : kDoubts)
         shares.push_back(fmt::format("{} {:.3g} %", name, kPercent * outcome.doubtful_share(name)));
     say("  doubtful pixels: {}\n", fmt::join(shares, ", "));
 }

@@ -228,6 +228,18 @@ void ExrWriter::finish() {
     destination_.commit();
 }
 
+void write_exr(const fs::path& file,
+               int width_px,
+               int height_px,
+               std::vector<std::string> channels,
+               std::span<const float> planes,
+               const ExrAttributes& attributes,
+               int zip_level) {
+    ExrWriter writer(file, width_px, height_px, std::move(channels), attributes, zip_level);
+    writer.write_rows(height_px, planes);
+    writer.finish();
+}
+
 void set_exr_threads(int threads) {
     Imf::setGlobalThreadCount(threads);
 }

@@ -108,6 +108,15 @@ class ExrWriter {
     std::unique_ptr<File> file_;
 };
 
+// A whole image at once. planes.size() == channels * width_px * height_px
+void write_exr(const std::filesystem::path& file,
+               int width_px,
+               int height_px,
+               std::vector<std::string> channels,
+               std::span<const float> planes,
+               const ExrAttributes& attributes = {},
+               int zip_level = ExrWriter::kFastestZip);
+
 // Threads for compression and decompression in the whole process. Pixels do not depend on it.
 void set_exr_threads(int threads);
 

@@ -37,9 +37,7 @@ void exr_of_png_frame(const fs::path& file, White white) {
             "a pixel is brighter than a 16-bit PNG can hold; allowed: --frame-format exr, which "
             "keeps highlights");
     }
-    ExrWriter exr(file, png.width_px, png.height_px, png.channels, {});
-    exr.write_rows(png.height_px, samples);
-    exr.finish();
+    write_exr(file, png.width_px, png.height_px, png.channels, samples);
     fs::remove(png_file);
 }
 

@@ -44,10 +44,12 @@ void write_planes(const Rig& rig, const LightmapRequest& request, const NamedPla
         {"aphotic:normalised", request.is_normalised ? "yes" : "no"},
         {"aphotic:error", fmt::format("{}", request.map.error)}};
     if (request.model) attributes.emplace_back(kModelErrorAttribute, attribute_of(*request.model));
-    ExrWriter writer(
-        request.file, rig.camera.width_px, rig.camera.height_px, planes.names, attributes);
-    writer.write_rows(rig.camera.height_px, planes.samples);
-    writer.finish();
+    write_exr(request.file,
+              rig.camera.width_px,
+              rig.camera.height_px,
+              planes.names,
+              planes.samples,
+              attributes);
 }
 
 }  // namespace

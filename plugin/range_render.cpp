@@ -80,9 +80,7 @@ void write_ranges(const fs::path& frame_file,
             sample = static_cast<float>(ray.origin_m.z() + way_m * ray.direction.z());
         }
     });
-    ExrWriter writer(picture.image, frame.width_px(), frame.height_px(), {"Z"}, {});
-    writer.write_rows(frame.height_px(), plane);
-    writer.finish();
+    write_exr(picture.image, frame.width_px(), frame.height_px(), {"Z"}, plane);
 }
 
 }  // namespace

@@ -210,10 +210,11 @@ void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     }
     if (set.camera) write_text_file(povray / kCameraRaysFile, camera_rays_sdl(*set.camera));
     if (!set.vignetting.empty()) {
-        ExrWriter writer(
-            vignetting_path(folder), set.manifest.width_px, set.manifest.height_px, {"Y"}, {});
-        writer.write_rows(set.manifest.height_px, set.vignetting);
-        writer.finish();
+        write_exr(vignetting_path(folder),
+                  set.manifest.width_px,
+                  set.manifest.height_px,
+                  {"Y"},
+                  set.vignetting);
     }
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);

@@ -43,7 +43,6 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -57,13 +56,18 @@ inline constexpr std::uint8_t kBlack = 4;      // it is at or below the black le
 inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone is near (cone_edge.h)
 inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
 inline constexpr std::uint8_t kRange = 32;    // its depth map has a hole there
-inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 6> kDoubts{
-    {{"dark", kDark},
-     {"saturated", kSaturated},
-     {"black", kBlack},
-     {"edge", kEdge},
-     {"clipped", kClipped},
-     {"range", kRange}}};
+struct DoubtWords {
+    std::string_view name;
+    std::uint8_t bit;
+    std::string_view words;
+};
+inline constexpr std::array kDoubts{
+    DoubtWords{"dark", kDark, "the gain is held, so that noise is not amplified"},
+    DoubtWords{"saturated", kSaturated, "the camera saturates"},
+    DoubtWords{"black", kBlack, "no light"},
+    DoubtWords{"edge", kEdge, "the edge of a beam is near"},
+    DoubtWords{"clipped", kClipped, "beyond what the file holds"},
+    DoubtWords{"range", kRange, "the depth map has a hole"}};
 
 struct NoiseLimit {
     double share = 0.01;              // of the map's brightest, in each channel

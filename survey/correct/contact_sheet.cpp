@@ -7,6 +7,8 @@
 #include "image/any_image.h"
 #include "image/preview.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -85,9 +87,10 @@ float exposure_of(const std::vector<Pair>& pairs) {
 }
 
 // The library only writes files.
-SheetPicture picture_of(const RawImage& image,
-                        const Eigen::Matrix3d& matrix,
-                        const fs::path& folder) {
+PagePicture picture_of(const RawImage& image,
+                       const Eigen::Matrix3d& matrix,
+                       const fs::path& folder,
+                       std::string words) {
     constexpr int kQuality = 85;
     const std::vector<float> planes = srgb_planes(image, matrix);
     const AtomicFile scratch(folder / "thumbnail.jpg");
@@ -99,14 +102,18 @@ SheetPicture picture_of(const RawImage& image,
                      .type = SampleType::Bits8,
                      .is_srgb = true,
                      .jpeg_quality = kQuality});
-    return {image.width_px, image.height_px, read_text_file(scratch.temporary())};
+    return {.bytes = read_text_file(scratch.temporary()),
+            .width_px = image.width_px,
+            .height_px = image.height_px,
+            .words = std::move(words),
+            .type = kJpeg};
 }
 
 }  // namespace
 
-std::vector<SheetImage> contact_sheet(const Survey& survey,
-                                      const CorrectionOptions& options,
-                                      const CorrectionReport& report) {
+PageFigures contact_sheet(const Survey& survey,
+                          const CorrectionOptions& options,
+                          const CorrectionReport& report) {
     const std::vector<const ImageFile*> files = chosen(survey, *report.run);
     const Mosaic mosaic = mosaic_of(report.looks);
     std::vector<Pair> pairs(files.size());
@@ -124,13 +131,15 @@ std::vector<SheetImage> contact_sheet(const Survey& survey,
     std::erase_if(pairs, [](const Pair& pair) { return pair.file == nullptr; });
     const Eigen::Matrix3d before = exposure_of(pairs) * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d after = shown_as(survey, options, report.gain).matrix();
-    std::vector<SheetImage> sheet;
+    PageFigures sheet{.figures = {}, .are_small = true};
     for (const Pair& pair : pairs) {
-        SheetImage image{.name = pair.file->name.string()};
-        if (survey.navigation) image.altitude_m = survey.sled_of(*pair.file).altitude_m;
-        image.before = picture_of(pair.before, before, options.run.folder);
-        image.after = picture_of(pair.after, after, options.run.folder);
-        sheet.push_back(std::move(image));
+        PageFigure figure{.caption = named(pair.file->name.string())};
+        if (survey.navigation)
+            figure.caption +=
+                fmt::format(", {:.2f}\xC2\xA0m", survey.sled_of(*pair.file).altitude_m);
+        figure.pictures = {picture_of(pair.before, before, options.run.folder, "before"),
+                           picture_of(pair.after, after, options.run.folder, "after")};
+        sheet.figures.push_back(std::move(figure));
     }
     return sheet;
 }

@@ -10,34 +10,20 @@
 // are.
 #pragma once
 
+#include "report/page.h"
 #include "survey/correct/correction_run.h"
 
-#include <optional>
-#include <string>
-#include <vector>
+#include <cstddef>
 
 namespace aphotic {
-
-struct SheetPicture {
-    int width_px = 0;
-    int height_px = 0;
-    std::string jpeg{};  // bytes of the file
-};
-
-struct SheetImage {
-    std::string name;
-    std::optional<double> altitude_m{};
-    SheetPicture before{};
-    SheetPicture after{};
-};
 
 inline constexpr std::size_t kMostOnSheet = 24;
 inline constexpr int kSheetPicture_px = 280;  // the longer side, at most
 
 // For a survey corrected with these options. Images that were skipped, or have been removed since,
-// are omitted.
-[[nodiscard]] std::vector<SheetImage> contact_sheet(const Survey& survey,
-                                                    const CorrectionOptions& options,
-                                                    const CorrectionReport& report);
+// are omitted. The captions are names and altitudes.
+[[nodiscard]] PageFigures contact_sheet(const Survey& survey,
+                                        const CorrectionOptions& options,
+                                        const CorrectionReport& report);
 
 }  // namespace aphotic

@@ -46,26 +46,10 @@ std::vector<std::string> warnings(const CorrectionReport& report) {
 
 // Before and after.
 
-PagePicture picture(const SheetPicture& shown, std::string words) {
-    return {.bytes = shown.jpeg,
-            .width_px = shown.width_px,
-            .height_px = shown.height_px,
-            .words = std::move(words),
-            .type = kJpeg};
-}
-
-std::vector<PagePart> before_and_after(std::span<const SheetImage> sheet) {
-    if (sheet.empty()) return {};
-    PageFigures figures{.figures = {}, .are_small = true};
-    for (const SheetImage& image : sheet) {
-        const std::string altitude =
-            image.altitude_m ? fmt::format(", {:.2f}\xC2\xA0m", *image.altitude_m) : "";
-        figures.figures.push_back(
-            {.pictures = {picture(image.before, "before"), picture(image.after, "after")},
-             .caption = named(image.name) + altitude});
-    }
+std::vector<PagePart> before_and_after(PageFigures sheet) {
+    if (sheet.figures.empty()) return {};
     return {"Left: as taken. Right: corrected. Each side has one exposure for all images.",
-            std::move(figures)};
+            std::move(sheet)};
 }
 
 // Light over altitude.
@@ -172,14 +156,8 @@ PageList gains(const CorrectionReport& report) {
 }
 
 PageList doubts(const RunOutcome& run) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords{
-        {{"dark", "the gain is held, so that noise is not amplified"},
-         {"saturated", "the camera saturates"},
-         {"black", "no light"},
-         {"edge", "the edge of a beam is near"},
-         {"clipped", "beyond what the file holds"}}};
     PageList items;
-    for (const auto& [name, words] : kWords) {
+    for (const auto& [name, bit, words] : kDoubts) {
         // A non-breaking space.
         items.emplace_back(
             name, fmt::format("{:.3g}\xC2\xA0%: {}", 100.0 * run.doubtful_share(name), words));
@@ -224,7 +202,7 @@ std::string title_of(const LightAt& light) {
 
 std::string correction_html(const Survey& survey,
                             const CorrectionReport& report,
-                            std::span<const SheetImage> sheet) {
+                            PageFigures sheet) {
     const RunOutcome& run = *report.run;
     const std::string title = title_of(survey.light);
     return page_html(
@@ -239,7 +217,9 @@ std::string correction_html(const Survey& survey,
                               grouped(run.kept))},
          .warnings = warnings(report),
          .sections = {
-             {.id = "images", .heading = "Before and after", .parts = before_and_after(sheet)},
+             {.id = "images",
+              .heading = "Before and after",
+              .parts = before_and_after(std::move(sheet))},
              {.id = "light",
               .heading = "Light over altitude",
               .parts = light_over_altitude(report.looks)},

@@ -5,16 +5,15 @@
 // self-contained: pictures are embedded.
 #pragma once
 
-#include "survey/correct/contact_sheet.h"
+#include "report/page.h"
 #include "survey/correct/correction_run.h"
 
-#include <span>
 #include <string>
 
 namespace aphotic {
 
 [[nodiscard]] std::string correction_html(const Survey& survey,
                                           const CorrectionReport& report,
-                                          std::span<const SheetImage> sheet);
+                                          PageFigures sheet);  // contact_sheet.h
 
 }  // namespace aphotic

@@ -132,8 +132,8 @@ CorrectionReport correct_survey(const Survey& survey,
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_text_file(notes, json_text(to_json(report)));
     if (options.report) {
-        const std::vector<SheetImage> sheet = contact_sheet(survey, options, report);
-        write_text_file(folder / kReportPage, correction_html(survey, report, sheet));
+        write_text_file(folder / kReportPage,
+                        correction_html(survey, report, contact_sheet(survey, options, report)));
     }
     return report;
 }

@@ -128,7 +128,7 @@ nlohmann::ordered_json to_json(const RunOutcome& outcome) {
                                 {"kept", outcome.kept},
                                 {"skipped", to_json(outcome.skipped)},
                                 {"dropouts", to_json(outcome.marked)}};
-    for (const auto& [name, bit] : kDoubts) {
+    for (const auto& [name, bit, words] : kDoubts) {
         json["doubtful"][std::string(name)] = outcome.doubtful_share(name);
     }
     return json;

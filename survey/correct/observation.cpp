@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/correct/observation.h"
 
+#include "base/degrees.h"
 #include "base/error.h"
 #include "base/in_order.h"
 #include "base/offered.h"
@@ -13,9 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -250,10 +252,6 @@ double noise_of(const Observed& observed) {
     return count > 0.0 ? std::sqrt(squares / count) / (sum / count) : kNotKnown;
 }
 
-double degrees(double radians) {
-    return radians * 180.0 / std::numbers::pi;
-}
-
 std::vector<float> planes_of(const Observed& observed, const RawImage& like, bool is_demosaiced) {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> planes =
@@ -307,8 +305,8 @@ nlohmann::ordered_json to_json(const Observation& observation,
             {"images", observation.images},
             {"outside", observation.outside},
             {"altitude_m", observation.sled.altitude_m},
-            {"pitch_deg", degrees(observation.sled.pitch_rad)},
-            {"roll_deg", degrees(observation.sled.roll_rad)},
+            {"pitch_deg", observation.sled.pitch_rad / kRadiansPerDegree},
+            {"roll_deg", observation.sled.roll_rad / kRadiansPerDegree},
             {"relative_error", observation.relative_error},
             {"skipped", to_json(observation.skipped)},
             {"dropouts", to_json(observation.marked)},
@@ -322,18 +320,17 @@ void write_observation(const std::filesystem::path& map_file, const Observation&
             channels.push_back(fmt::format("{}{}", prefix, name));
     }
     const Sled& sled = observation.sled;
-    ExrWriter exr(map_file,
-                  observation.width_px,
-                  observation.height_px,
-                  channels,
-                  {{"aphotic:version", APHOTIC_VERSION},
-                   {"aphotic:average", name_of(observation.average)},
-                   {"aphotic:images", fmt::format("{}", observation.images)},
-                   {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
-                   {"aphotic:pitch_deg", fmt::format("{}", degrees(sled.pitch_rad))},
-                   {"aphotic:roll_deg", fmt::format("{}", degrees(sled.roll_rad))}});
-    exr.write_rows(observation.height_px, observation.planes);
-    exr.finish();
+    write_exr(map_file,
+              observation.width_px,
+              observation.height_px,
+              std::move(channels),
+              observation.planes,
+              {{"aphotic:version", APHOTIC_VERSION},
+               {"aphotic:average", name_of(observation.average)},
+               {"aphotic:images", fmt::format("{}", observation.images)},
+               {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
+               {"aphotic:pitch_deg", fmt::format("{}", sled.pitch_rad / kRadiansPerDegree)},
+               {"aphotic:roll_deg", fmt::format("{}", sled.roll_rad / kRadiansPerDegree)}});
 }
 
 }  // namespace aphotic

@@ -165,7 +165,7 @@ void mark_clipped(CorrectedImage& result) {
 
 Counts doubts_in(const std::vector<std::uint8_t>& doubts) {
     Counts counts;
-    for (const auto& [name, bit] : kDoubts) {
+    for (const auto& [name, bit, words] : kDoubts) {
         counts[std::string(name)] = static_cast<double>(
             std::ranges::count_if(doubts, [bit = bit](std::uint8_t d) { return (d & bit) != 0; }));
     }
@@ -183,23 +183,22 @@ int zip_level(Compression compression) {
     return compression == Compression::Small ? kUsual : ExrWriter::kFastestZip;
 }
 
-void write_exr(const fs::path& file,
-               const RawImage& image,
-               const SurveyImage& source,
-               Compression compression,
-               ExrAttributes attributes) {
+void write_linear(const fs::path& file,
+                  const RawImage& image,
+                  const SurveyImage& source,
+                  Compression compression,
+                  ExrAttributes attributes) {
     attributes.emplace_back("aphotic:version", APHOTIC_VERSION);
     if (!source.description.empty()) attributes.emplace_back("comments", source.description);
     if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
     if (source.tags) std::ranges::copy(words_of(*source.tags), std::back_inserter(attributes));
-    ExrWriter writer(file,
-                     image.width_px,
-                     image.height_px,
-                     channel_names(image),
-                     attributes,
-                     zip_level(compression));
-    writer.write_rows(image.height_px, image.samples);
-    writer.finish();
+    write_exr(file,
+              image.width_px,
+              image.height_px,
+              channel_names(image),
+              image.samples,
+              attributes,
+              zip_level(compression));
 }
 
 void write_mask(const fs::path& file, const CorrectedImage& result, Compression compression) {
@@ -242,7 +241,7 @@ Counts write_results(const fs::path& folder,
     make_folder(image.parent_path());
     if (format.mask) write_mask(folder / mask_of(file), result, format.compression);
     if (format.format == "exr") {
-        write_exr(image, result.image, source, format.compression, more);
+        write_linear(image, result.image, source, format.compression, more);
     } else {
         write_any_image(image,
                         {.width_px = result.image.width_px,

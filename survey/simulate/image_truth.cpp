@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
 
@@ -79,40 +78,27 @@ void write_seen_of(const SimulatedSurvey& survey,
                    const std::vector<Kind>& kinds,
                    const std::vector<PerChannel>& colours,
                    const Sight& sight) {
-    constexpr int kRows = 64;
     const Camera& camera = survey.rig.camera;
     const auto width = static_cast<std::size_t>(camera.width_px);
-    std::vector<std::unique_ptr<ExrWriter>> writers;
-    for (const Kind& kind : kinds) {
-        writers.push_back(std::make_unique<ExrWriter>(file_of(survey, kind.name, leg),
-                                                      camera.width_px,
-                                                      camera.height_px,
-                                                      kind.channels,
-                                                      ExrAttributes{}));
-    }
-    std::unique_ptr<ExrReader> texture;
+    const std::size_t plane = width * static_cast<std::size_t>(camera.height_px);
+    std::vector<float> samples(kSeenPlanes * plane);
+    std::vector<float> texture(plane, 1.0F);
     if (survey.texture > 0.0)
-        texture = std::make_unique<ExrReader>(file_of(survey, "texture", leg));
-    for (int first = 0; first < camera.height_px; first += kRows) {
-        const int rows = std::min(kRows, camera.height_px - first);
-        const std::size_t plane = width * static_cast<std::size_t>(rows);
-        std::vector<float> samples(kSeenPlanes * plane);
-        std::vector<float> textures(plane, 1.0F);
-        if (texture) texture->read_rows(first, rows, std::vector<std::string>{"Y"}, textures);
-        for (std::size_t i = 0; i < plane; ++i) {
-            const std::size_t row = i / width;
-            const auto seen =
-                sight(static_cast<double>(i % width) + 0.5, first + static_cast<double>(row) + 0.5);
-            const SeenPixel pixel = pixel_of(seen, colours, textures[i]);
-            for (std::size_t p = 0; p < kSeenPlanes; ++p) samples[p * plane + i] = pixel[p];
-        }
-        for (std::size_t k = 0; k < kinds.size(); ++k) {
-            writers[k]->write_rows(rows,
-                                   std::span(samples).subspan(kinds[k].first_plane * plane,
-                                                              kinds[k].channels.size() * plane));
-        }
+        texture = ExrReader(file_of(survey, "texture", leg)).planes(std::vector<std::string>{"Y"});
+    for (std::size_t i = 0; i < plane; ++i) {
+        const auto seen =
+            sight(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+        const SeenPixel pixel = pixel_of(seen, colours, texture[i]);
+        for (std::size_t p = 0; p < kSeenPlanes; ++p) samples[p * plane + i] = pixel[p];
     }
-    for (const auto& writer : writers) writer->finish();
+    for (const Kind& kind : kinds) {
+        write_exr(
+            file_of(survey, kind.name, leg),
+            camera.width_px,
+            camera.height_px,
+            kind.channels,
+            std::span(samples).subspan(kind.first_plane * plane, kind.channels.size() * plane));
+    }
 }
 
 }  // namespace

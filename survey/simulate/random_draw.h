@@ -2,7 +2,6 @@
 //
 // Random numbers for simulated surveys: independent of the standard library, whose distributions
 // vary.
-// vary.
 //
 //   normal     mean 0, variance 1; by Box and Muller
 //   poisson    mean and variance mu: under kFewEvents by Knuth's product of uniforms, else by the

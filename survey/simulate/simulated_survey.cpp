@@ -42,15 +42,6 @@ SettingsJson settings_of(const SimulatedSurvey& survey) {
             {"roll_bias_deg", errors.roll_bias_deg}};
 }
 
-void write_planes(const fs::path& file,
-                  const Camera& camera,
-                  std::vector<std::string> channels,
-                  std::span<const float> planes) {
-    ExrWriter writer(file, camera.width_px, camera.height_px, std::move(channels), {});
-    writer.write_rows(camera.height_px, planes);
-    writer.finish();
-}
-
 // By pixel; 1 where no floor is in view.
 std::vector<float> texture_of(const SimulatedSurvey& survey, const Leg& leg) {
     const Rig& rig = survey.rig;
@@ -83,9 +74,10 @@ void make_truth(const SimulatedSurvey& survey, const LightmapMaker& maker, const
         const std::vector<float> texture = texture_of(survey, leg);
         for (std::size_t i = 0; i < map.samples.size(); ++i)
             map.samples[i] *= texture[i % texture.size()];
-        write_planes(file_of(survey, "texture", leg), survey.rig.camera, {"Y"}, texture);
+        write_exr(file_of(survey, "texture", leg), map.width_px, map.height_px, {"Y"}, texture);
     }
-    write_planes(truth_file(survey, leg), survey.rig.camera, {"R", "G", "B"}, signal_of(map));
+    write_exr(
+        truth_file(survey, leg), map.width_px, map.height_px, {"R", "G", "B"}, signal_of(map));
 }
 
 void write_raw(const SimulatedSurvey& survey, const Leg& leg) {
