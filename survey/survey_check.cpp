@@ -107,13 +107,7 @@ struct Line {
 };
 
 // Of products of deviations from the means.
-struct Sums {
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-};
-
-Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
+Likeness sums_of(const std::vector<double>& x, const std::vector<double>& y) {
     if (x.empty()) return {};
     const auto less_mean = [](const std::vector<double>& numbers) -> Eigen::ArrayXd {
         const Eigen::Map<const Eigen::ArrayXd> all(numbers.data(), std::ssize(numbers));
@@ -121,7 +115,10 @@ Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
     };
     const Eigen::ArrayXd dx = less_mean(x);
     const Eigen::ArrayXd dy = less_mean(y);
-    return {.xx = dx.square().sum(), .xy = (dx * dy).sum(), .yy = dy.square().sum()};
+    return {.xx = dx.square().sum(),
+            .xy = (dx * dy).sum(),
+            .blocks = x.size(),
+            .yy = dy.square().sum()};
 }
 
 // Logarithms of pairs.
@@ -133,16 +130,13 @@ struct LogPairs {
         x.push_back(std::log(one));
         y.push_back(std::log(other));
     }
-    [[nodiscard]] Likeness likeness() const {
-        const Sums sums = sums_of(x, y);
-        return {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
-    }
+    [[nodiscard]] Likeness likeness() const { return sums_of(x, y); }
 };
 
 // y = slope x + const by least squares; unknown if the points are too few or too close together.
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
     if (x.size() < kEnoughImages) return {};
-    const Sums sums = sums_of(x, y);
+    const Likeness sums = sums_of(x, y);
     if (!(sums.xx > kSpread * kSpread * static_cast<double>(x.size()))) return {};
     const double slope = sums.xy / sums.xx;
     const auto freedom = static_cast<double>(x.size() - 2);
@@ -602,17 +596,9 @@ TopNumber top_of(const RawImage& raw, bool is_whole_numbers) {
 
 std::array<double, 4> site_medians(const RawImage& raw, float black) {
     std::array<double, 4> medians{};
-    for (int site = 0; site < 4; ++site) {
-        std::vector<float> samples;
-        samples.reserve(raw.pixels() / 4 + 1);
-        for (int row = site / 2; row < raw.height_px; row += 2) {
-            for (int column = site % 2; column < raw.width_px; column += 2) {
-                samples.push_back(
-                    raw.samples[size_of(row) * size_of(raw.width_px) + size_of(column)]);
-            }
-        }
-        medians[size_of(site)] = double{upper_median(samples)} - static_cast<double>(black);
-    }
+    std::ranges::transform(site_planes(raw), medians.begin(), [&](SitePlane& site) {
+        return double{upper_median(site.samples)} - static_cast<double>(black);
+    });
     return medians;
 }
 

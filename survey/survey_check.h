@@ -80,6 +80,7 @@ struct Likeness {
     double xx = 0.0;
     double xy = 0.0;
     std::size_t blocks = 0;
+    double yy = 0.0;
 };
 [[nodiscard]] Likeness likeness(const RawImage& raw,
                                 const SensorLevels& levels,

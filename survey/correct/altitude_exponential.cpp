@@ -9,16 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace aphotic {
-namespace {
-
-double mean_of(const std::vector<float>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-}  // namespace
 
 AltitudeExponential::AltitudeExponential(std::size_t samples, double bin_m)
     : samples_(samples), bin_m_(bin_m) {}

@@ -82,13 +82,9 @@ std::vector<float> gaussian_blur(std::span<const float> plane, int width_px, dou
     return result;
 }
 
-namespace {
-
 double mean_of(std::span<const float> plane) {
     return std::accumulate(plane.begin(), plane.end(), 0.0) / static_cast<double>(plane.size());
 }
-
-}  // namespace
 
 std::vector<float> divided_by_pattern(std::span<const float> plane,
                                       std::span<const float> pattern) {

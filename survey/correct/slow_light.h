@@ -21,7 +21,6 @@
 // ones are limited to patterns that their polynomials can follow, which excludes the edge of a
 // cone. A polynomial can fall to 0 or below; the lower limit of the pattern bounds its gain to
 // 1 / kLeastShare.
-// kLeastShare.
 //
 // R. Garcia, T. Nicosevici and X. Cufi, "On the way to solve lighting problems in underwater
 // imaging", OCEANS 2002 (illumination-reflectance, homomorphic, local equalisation); H. Singh,
@@ -50,6 +49,8 @@ namespace aphotic {
 [[nodiscard]] std::vector<float> gaussian_blur(std::span<const float> plane,
                                                int width_px,
                                                double sigma_px);
+
+[[nodiscard]] double mean_of(std::span<const float> plane);
 
 inline constexpr double kLeastShare = 0.01;
 inline constexpr double kBlackShare = 1e-3;

@@ -46,7 +46,6 @@ namespace {
 //
 // Source: the comments that seabed_slam and oplab_pipeline (auv_nav, parse_acfr_stereo_pose.py)
 // write into these files.
-// write into these files.
 enum AcfrWord : std::size_t {
     kX = 4,
     kY = 5,
