@@ -255,6 +255,8 @@ ExitStatus show_beam(const BeamCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_beam(CLI::App& app) {
     const auto options = std::make_shared<BeamCommandOptions>();
     add_option(app, "RIG:NAME|FILE", options->name)->required();
@@ -264,9 +266,5 @@ Action configure_beam(CLI::App& app) {
     add_json(app, options->json);
     return [options] { return show_beam(*options); };
 }
-
-}  // namespace
-
-const Command kBeam{"beam", configure_beam};
 
 }  // namespace aphotic::cli

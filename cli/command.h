@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The subcommands of `aphotic`, one small file each, which ends with its entry of the table in
-// cli/main.cpp. Dispatch and help come from that table.
+// The subcommands of `aphotic`, one small file each, which ends with its function of this list.
+// Dispatch and help come from the table in cli/main.cpp, which names them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,30 +20,25 @@ enum ExitStatus : int {
 // The action of a subcommand after its options are parsed. Throws InputError or RunError.
 using Action = std::function<ExitStatus()>;
 
-struct Command {
-    const char* name;
-    // Adds the options to the subcommand's parser and returns the action that reads them.
-    Action (*configure)(CLI::App& options);
-};
-
-extern const Command kInit;
-extern const Command kRender;
-extern const Command kPlan;
-extern const Command kGenerate;
-extern const Command kIntegrate;
-extern const Command kTrace;
-extern const Command kLightmap;
-extern const Command kDesign;
-extern const Command kCorrect;
-extern const Command kObserve;
-extern const Command kFit;
-extern const Command kBaseline;
-extern const Command kSurvey;
-extern const Command kValidate;
-extern const Command kStudy;
-extern const Command kCompare;
-extern const Command kBeam;
-extern const Command kData;
-extern const Command kHelp;
+// Each adds its options to the subcommand's parser and returns the action that reads them.
+Action configure_init(CLI::App& app);
+Action configure_render(CLI::App& app);
+Action configure_plan(CLI::App& app);
+Action configure_generate(CLI::App& app);
+Action configure_integrate(CLI::App& app);
+Action configure_trace(CLI::App& app);
+Action configure_lightmap(CLI::App& app);
+Action configure_design(CLI::App& app);
+Action configure_correct(CLI::App& app);
+Action configure_observe(CLI::App& app);
+Action configure_fit(CLI::App& app);
+Action configure_baseline(CLI::App& app);
+Action configure_survey(CLI::App& app);
+Action configure_validate(CLI::App& app);
+Action configure_study(CLI::App& app);
+Action configure_compare(CLI::App& app);
+Action configure_beam(CLI::App& app);
+Action configure_data(CLI::App& app);
+Action configure_help(CLI::App& app);
 
 }  // namespace aphotic::cli

@@ -194,6 +194,8 @@ ExitStatus compare(const CompareCommandOptions& options) {
     return !compared.images || compared.images->holds() ? kDone : kAnswerIsNo;
 }
 
+}  // namespace
+
 Action configure_compare(CLI::App& app) {
     const auto options = std::make_shared<CompareCommandOptions>();
     ComparisonRequest& request = options->request;
@@ -212,9 +214,5 @@ Action configure_compare(CLI::App& app) {
     add_json(app, options->json);
     return [options] { return compare(*options); };
 }
-
-}  // namespace
-
-const Command kCompare{"compare", configure_compare};
 
 }  // namespace aphotic::cli

@@ -330,6 +330,8 @@ Action configure_run(CLI::App& app,
     };
 }
 
+}  // namespace
+
 Action configure_correct(CLI::App& app) {
     const auto options = std::make_shared<CorrectCommandOptions>();
     add_images(app, options->input);
@@ -358,11 +360,5 @@ Action configure_baseline(CLI::App& app) {
     const Settle settle = add_format_options(app, options->correction.run.format);
     return configure_run(app, options, settle);
 }
-
-}  // namespace
-
-const Command kCorrect{"correct", configure_correct};
-
-const Command kBaseline{"baseline", configure_baseline};
 
 }  // namespace aphotic::cli

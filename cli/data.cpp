@@ -234,6 +234,8 @@ ExitStatus show_data(const DataCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_data(CLI::App& app) {
     const auto options = std::make_shared<DataCommandOptions>();
     auto* name = add_option(app, "NAME", options->name);
@@ -243,9 +245,5 @@ Action configure_data(CLI::App& app) {
     csv->needs(name);
     return [options] { return show_data(*options); };
 }
-
-}  // namespace
-
-const Command kData{"data", configure_data};
 
 }  // namespace aphotic::cli

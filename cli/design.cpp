@@ -146,6 +146,8 @@ void add_freedom(CLI::App& app, DesignCommandOptions& options) {
     add_option(app, "--turn", options.turn_deg)->check(in_range(0.0, kMostTurn_deg));
 }
 
+}  // namespace
+
 Action configure_design(CLI::App& app) {
     constexpr int kLeastEvaluations = 10;
     constexpr int kMostEvaluations = 10'000'000;
@@ -167,9 +169,5 @@ Action configure_design(CLI::App& app) {
     add_json(app, options->json);
     return [options] { return design_rig(*options); };
 }
-
-}  // namespace
-
-const Command kDesign{"design", configure_design};
 
 }  // namespace aphotic::cli

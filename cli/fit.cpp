@@ -215,6 +215,8 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
         samples.skipped.size(), samples.skipped.size() + samples.images.size(), options.input);
 }
 
+}  // namespace
+
 Action configure_fit(CLI::App& app) {
     const auto options = std::make_shared<FitCommandOptions>();
     options->fit.threads = all_cores();
@@ -239,9 +241,5 @@ Action configure_fit(CLI::App& app) {
     add_outcome_options(app, options->input);
     return [&app, options] { return fit_survey(app, *options); };
 }
-
-}  // namespace
-
-const Command kFit{"fit", configure_fit};
 
 }  // namespace aphotic::cli

@@ -105,6 +105,8 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_generate(CLI::App& app) {
     const auto options = std::make_shared<GenerateCommandOptions>();
     CLI::Option* folder = add_output_folder(app, options->folder);
@@ -114,9 +116,5 @@ Action configure_generate(CLI::App& app) {
     add_planning_options(app, options->planning);
     return [options] { return generate_scenes(*options); };
 }
-
-}  // namespace
-
-const Command kGenerate{"generate", configure_generate};
 
 }  // namespace aphotic::cli

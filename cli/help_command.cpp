@@ -26,14 +26,12 @@ ExitStatus print_help(const CLI::App& all, const std::string& name) {
     throw InputError("help: found {}; no such command{}", name, nearest_command(all, name));
 }
 
+}  // namespace
+
 Action configure_help(CLI::App& app) {
     const auto name = std::make_shared<std::string>();
     add_option(app, "COMMAND", *name);
     return [&app, name] { return print_help(*app.get_parent(), *name); };
 }
-
-}  // namespace
-
-const Command kHelp{"help", configure_help};
 
 }  // namespace aphotic::cli

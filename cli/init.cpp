@@ -81,6 +81,8 @@ ExitStatus begin_rig(const InitOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_init(CLI::App& app) {
     const auto options = std::make_shared<InitOptions>();
     add_option(app, "FILE", options->file)->required();
@@ -88,9 +90,5 @@ Action configure_init(CLI::App& app) {
     add_json(app, options->json);
     return [options] { return begin_rig(*options); };
 }
-
-}  // namespace
-
-const Command kInit{"init", configure_init};
 
 }  // namespace aphotic::cli

@@ -119,6 +119,8 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_integrate(CLI::App& app) {
     const auto options = std::make_shared<IntegrateCommandOptions>();
     add_option(app, "DIR", options->folder)->required();
@@ -132,9 +134,5 @@ Action configure_integrate(CLI::App& app) {
     add_preview_options(app, options->preview);
     return [options] { return integrate_frames(*options); };
 }
-
-}  // namespace
-
-const Command kIntegrate{"integrate", configure_integrate};
 
 }  // namespace aphotic::cli

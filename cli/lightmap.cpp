@@ -397,6 +397,8 @@ void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
     add_option(app, "--water-multiple", options.water_multiple)->check(not_negative());
 }
 
+}  // namespace
+
 Action configure_lightmap(CLI::App& app) {
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
@@ -422,9 +424,5 @@ Action configure_lightmap(CLI::App& app) {
     add_preview_options(app, options->preview);
     return [options] { return run_lightmap(*options); };
 }
-
-}  // namespace
-
-const Command kLightmap{"lightmap", configure_lightmap};
 
 }  // namespace aphotic::cli

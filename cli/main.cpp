@@ -40,26 +40,31 @@ namespace {
 
 using namespace aphotic::cli;
 
+struct Command {
+    const char* name;
+    Action (*configure)(CLI::App& app);
+};
+
 // In the order of --help.
-constexpr std::array kCommands{&kInit,
-                               &kRender,
-                               &kPlan,
-                               &kGenerate,
-                               &kIntegrate,
-                               &kTrace,
-                               &kLightmap,
-                               &kDesign,
-                               &kCorrect,
-                               &kObserve,
-                               &kFit,
-                               &kBaseline,
-                               &kSurvey,
-                               &kValidate,
-                               &kStudy,
-                               &kCompare,
-                               &kBeam,
-                               &kData,
-                               &kHelp};
+constexpr std::array kCommands{Command{"init", configure_init},
+                               Command{"render", configure_render},
+                               Command{"plan", configure_plan},
+                               Command{"generate", configure_generate},
+                               Command{"integrate", configure_integrate},
+                               Command{"trace", configure_trace},
+                               Command{"lightmap", configure_lightmap},
+                               Command{"design", configure_design},
+                               Command{"correct", configure_correct},
+                               Command{"observe", configure_observe},
+                               Command{"fit", configure_fit},
+                               Command{"baseline", configure_baseline},
+                               Command{"survey", configure_survey},
+                               Command{"validate", configure_validate},
+                               Command{"study", configure_study},
+                               Command{"compare", configure_compare},
+                               Command{"beam", configure_beam},
+                               Command{"data", configure_data},
+                               Command{"help", configure_help}};
 
 // keeps: the work that remains after a signal.
 ExitStatus run(const Action& action, const std::string& keeps) {
@@ -199,10 +204,10 @@ int main(int argc, char** argv) {
     std::string keeps;
     add_completion(app, chosen);
     add_manual(app, chosen);
-    for (const Command* command : kCommands) {
-        CLI::App* sub = app.add_subcommand(command->name);
+    for (const auto& [name, configure] : kCommands) {
+        CLI::App* sub = app.add_subcommand(name);
         describe(*sub);
-        const Action action = command->configure(*sub);
+        const Action action = configure(*sub);
         add_set_option(*sub);
         add_flag(*sub, "--quiet", aphotic::hush_progress);
         add_common_checks(*sub);

@@ -95,6 +95,8 @@ void add_average_options(CLI::App& app, ObservationOptions& options) {
     add_flag(app, "--demosaic", options.demosaic);
 }
 
+}  // namespace
+
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
     add_images(app, options->input);
@@ -112,9 +114,5 @@ Action configure_observe(CLI::App& app) {
     add_outcome_options(app, options->input);
     return [options] { return observe_survey(*options); };
 }
-
-}  // namespace
-
-const Command kObserve{"observe", configure_observe};
 
 }  // namespace aphotic::cli

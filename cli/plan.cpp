@@ -366,6 +366,8 @@ void plot_plan(const Rig& rig, const RenderPlan& plan, const std::filesystem::pa
     write_plots(std::array{light_panel(rig, plan), error_panel(rig, plan)}, file);
 }
 
+}  // namespace
+
 Action configure_plan(CLI::App& app) {
     const auto options = std::make_shared<PlanCommandOptions>();
     add_option(app, "--plot", options->plot);
@@ -384,9 +386,5 @@ Action configure_plan(CLI::App& app) {
         return kDone;
     };
 }
-
-}  // namespace
-
-const Command kPlan{"plan", configure_plan};
 
 }  // namespace aphotic::cli

@@ -157,6 +157,8 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_render(CLI::App& app) {
     const auto options = std::make_shared<RenderCommandOptions>();
     add_output_folder(app, options->folder);
@@ -178,9 +180,5 @@ Action configure_render(CLI::App& app) {
         return render_rig(*options);
     };
 }
-
-}  // namespace
-
-const Command kRender{"render", configure_render};
 
 }  // namespace aphotic::cli

@@ -179,6 +179,8 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_study(CLI::App& app) {
     constexpr int kMostFitted = 48;
     constexpr int kMostBands = 100'000;
@@ -204,9 +206,5 @@ Action configure_study(CLI::App& app) {
     add_povray_options(app, options->povray, options->stall_timeout_s);
     return [options] { return study_rig(*options); };
 }
-
-}  // namespace
-
-const Command kStudy{"study", configure_study};
 
 }  // namespace aphotic::cli

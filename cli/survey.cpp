@@ -442,6 +442,8 @@ void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
     add_flag(app, "--no-noise", [&options] { options.has_noise = false; });
 }
 
+}  // namespace
+
 Action configure_survey(CLI::App& app) {
     const auto options = std::make_shared<SurveyCommandOptions>();
     add_output_folder(app, options->folder)->required();
@@ -454,9 +456,5 @@ Action configure_survey(CLI::App& app) {
     add_planning_options(app, options->planning);
     return [options] { return make_survey(*options); };
 }
-
-}  // namespace
-
-const Command kSurvey{"survey", configure_survey};
 
 }  // namespace aphotic::cli

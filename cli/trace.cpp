@@ -166,6 +166,8 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
     return kDone;
 }
 
+}  // namespace
+
 Action configure_trace(CLI::App& app) {
     const auto options = std::make_shared<TraceCommandOptions>();
     add_output_folder(app, options->folder)->required();
@@ -176,9 +178,5 @@ Action configure_trace(CLI::App& app) {
     add_preview_options(app, options->preview);
     return [options] { return trace_rig(*options); };
 }
-
-}  // namespace
-
-const Command kTrace{"trace", configure_trace};
 
 }  // namespace aphotic::cli

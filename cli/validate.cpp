@@ -238,6 +238,8 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     return report.holds() ? kDone : kAnswerIsNo;
 }
 
+}  // namespace
+
 Action configure_validate(CLI::App& app) {
     const auto options = std::make_shared<ValidateCommandOptions>();
     add_output_folder(app, options->folder)->required();
@@ -250,9 +252,5 @@ Action configure_validate(CLI::App& app) {
     add_planning_options(app, options->planning);
     return [options] { return validate_rig(*options); };
 }
-
-}  // namespace
-
-const Command kValidate{"validate", configure_validate};
 
 }  // namespace aphotic::cli
