@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"

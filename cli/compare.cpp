@@ -7,7 +7,6 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/terminal.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/completion.h"
+#include "cli/help.h"
 
 #include "cli/option_words.h"
 

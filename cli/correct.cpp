@@ -9,7 +9,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"

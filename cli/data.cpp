@@ -4,7 +4,6 @@
 // user's table.
 #include "base/csv.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/terminal.h"

@@ -11,7 +11,6 @@
 #include "base/words.h"
 #include "base/work_folder.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"

@@ -7,7 +7,6 @@
 #include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"

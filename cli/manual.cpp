@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/manual.h"
-
 #include "cli/help.h"
+
 #include "cli/option_words.h"
 
 #include <fmt/format.h>

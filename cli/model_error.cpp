@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "cli/option_checks.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 

@@ -7,7 +7,6 @@
 #include "base/number.h"
 #include "base/work_folder.h"
 #include "cli/model_error.h"
-#include "cli/option_checks.h"
 #include "cli/option_words.h"
 #include "image/preview.h"
 #include "plugin/povray.h"

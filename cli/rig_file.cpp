@@ -2,7 +2,6 @@
 #include "cli/rig_file.h"
 
 #include "base/error.h"
-#include "cli/option_checks.h"
 #include "cli/option_words.h"
 #include "cli/terminal.h"
 #include "rig/file/rig_cameras.h"

@@ -10,7 +10,6 @@
 #include "base/sha256.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"

@@ -6,8 +6,6 @@
 #include "base/number.h"
 #include "base/progress.h"
 #include "base/words.h"
-#include "cli/option_checks.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "cli/command.h"
-#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"

@@ -4,7 +4,6 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/json_text.h"
-#include "lightmap/design_page.h"
 
 #include <nlohmann/json.hpp>
 

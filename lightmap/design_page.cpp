@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lightmap/design_page.h"
+#include "lightmap/design_files.h"
 
 #include "base/degrees.h"
 #include "image/preview.h"

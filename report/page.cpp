@@ -6,6 +6,9 @@
 #include "report/svg.h"
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <cstddef>
 
 namespace aphotic {
 namespace {
@@ -161,6 +164,15 @@ std::string named(std::string_view text) {
     for (std::size_t at = inner.find(kPop); at != std::string::npos; at = inner.find(kPop, at))
         inner.erase(at, kPop.size());
     return fmt::format("{}{}{}", kIsolate, inner, kPop);
+}
+
+std::string data_uri(std::string_view picture, std::string_view type) {
+    std::vector<unsigned char> base64(4 * ((picture.size() + 2) / 3) + 1);  // and a terminating 0
+    const int length = EVP_EncodeBlock(base64.data(),
+                                       reinterpret_cast<const unsigned char*>(picture.data()),
+                                       static_cast<int>(picture.size()));
+    return fmt::format("data:{};base64,", type) +
+           std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
 }
 
 PageKey stroke_key(std::string_view style, std::string words) {

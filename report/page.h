@@ -8,8 +8,6 @@
 // sentence, so that their direction of writing does not affect it.
 #pragma once
 
-#include "report/picture.h"
-
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +20,12 @@
 namespace aphotic {
 
 [[nodiscard]] std::string named(std::string_view text);
+
+inline constexpr std::string_view kPng = "image/png";
+inline constexpr std::string_view kJpeg = "image/jpeg";
+
+// An embedded picture, the value of src="...", from a file's bytes.
+[[nodiscard]] std::string data_uri(std::string_view picture, std::string_view type = kPng);
 
 enum class PageTone { None, Good, Bad };
 

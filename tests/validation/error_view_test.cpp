@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/error_view.h"
 
+#include "report/page.h"
 #include "support/png.h"
 
 #include <gtest/gtest.h>
