@@ -5,7 +5,7 @@
 #include "image/preview.h"
 #include "report/html.h"
 #include "report/page.h"
-#include "report/svg.h"
+#include "report/plot.h"
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 
@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -139,61 +140,38 @@ std::vector<PagePart> light(const Rig& rig, const DesignResult& result) {
             pair_of(steps_png(before), steps_png(after), before.width_px, before.height_px)};
 }
 
+constexpr std::size_t kStartTone = 1;
+constexpr std::size_t kBestTone = 2;
+
 std::vector<PagePart> front(const DesignResult& result) {
-    constexpr double kWidth = 760.0;
     constexpr double kHeight = 420.0;
-    constexpr double kMargin = 16.0;
-    constexpr int kTicks = 6;
-    const LightFigures& start = result.start.figures;
-    const auto signal_of_start = [&](const LightFigures& f) {
-        return f.signal_to_noise / start.signal_to_noise;
+    const auto place_of = [&](const Design& one, std::string name, std::size_t tone) {
+        return PlotCurve{.label = std::move(name),
+                         .x = {one.figures.signal_to_noise / result.start.figures.signal_to_noise},
+                         .y = {one.figures.evenness},
+                         .tone = tone,
+                         .dots = true};
     };
-    std::vector<double> x;
-    std::vector<double> y;
+    PlotCurve all{.label = "front", .x = {}, .y = {}, .dots = true};
     for (const Design& one : result.front) {
-        x.push_back(signal_of_start(one.figures));
-        y.push_back(one.figures.evenness);
+        const PlotCurve place = place_of(one, "", 0);
+        all.x.push_back(place.x.front());
+        all.y.push_back(place.y.front());
     }
-    const std::array<double, 1> start_x{1.0};
-    const std::array<double, 1> start_y{start.evenness};
-    const std::array<double, 1> best_x{signal_of_start(result.best.figures)};
-    const std::array<double, 1> best_y{result.best.figures.evenness};
-    ValueRange xs;
-    ValueRange ys;
-    xs.include(x);
-    xs.include(start_x);
-    ys.include(y);
-    ys.include(start_y);
-    SvgPanel panel{.left = kAxisWidth,
-                   .top = kMargin,
-                   .width = kWidth - kAxisWidth - kMargin,
-                   .height = kHeight - kAxisHeight - kMargin,
-                   .x = linear_axis_around(xs.least, xs.most, kTicks),
-                   .y = linear_axis_around(ys.least, ys.most, kTicks)};
-    panel.x.title = "signal to noise of the worst pixel (start = 1)";
-    panel.y.title = "evenness U₀";
-    const auto dots =
-        [&](std::span<const double> at, std::span<const double> of, std::size_t tone) {
-            return svg_dots(
-                panel,
-                at,
-                of,
-                fmt::format("class=\"dots\" style=\"stroke-width: 9px\" {}", svg_tone(tone)));
-        };
-    constexpr std::size_t kFrontTone = 0;
-    constexpr std::size_t kStartTone = 1;
-    constexpr std::size_t kBestTone = 2;
-    const std::string elements = svg_axes(panel) + svg_curve(panel, x, y, "class=\"front\"") +
-                                 dots(x, y, kFrontTone) + dots(start_x, start_y, kStartTone) +
-                                 dots(best_x, best_y, kBestTone);
+    PlotCurve line = all;
+    line.label.clear();
+    line.dots = false;
+    const Plot plot{.title = "evenness over signal to noise",
+                    .x_label = "signal to noise of the worst pixel (start = 1)",
+                    .y_label = "evenness U₀",
+                    .curves = {line,
+                               all,
+                               place_of(result.start, "start", kStartTone),
+                               place_of(result.best, "design", kBestTone)}};
     return {
         "Designs that no other beats in both: more even light, or more of it. --keep chooses among "
         "them.",
-        PageLegend{dot_key(kFrontTone, "front"),
-                   dot_key(kStartTone, "start"),
-                   dot_key(kBestTone, "design")},
-        PagePlot{
-            svg_drawing("trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)}};
+        PagePlot{page_plot("trade-plot", {&plot, 1}, kHeight)}};
 }
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -215,90 +193,51 @@ Points seen_floor(const Rig& rig) {
     return corners;
 }
 
-// Which way the sled's x forward, y starboard and z down are drawn, to the right and down.
+// Which way the sled's x forward, y starboard and z down are drawn, to the right and up.
 struct SledView {
     const char* id;
-    const char* name;
+    Plot plot;  // without curves
     Eigen::Vector3d right;
-    Eigen::Vector3d down;
-};
+    Eigen::Vector3d up;
 
-// A drawing, to scale, of the elements added to it.
-class SledDrawing {
-  public:
-    SledDrawing(const SledView& view, const Points& shown) : view_(view) {
-        Eigen::AlignedBox2d box;
-        for (const Eigen::Vector3d& point : shown) box.extend(flat(point));
-        px_per_m_ = (kSide - 2.0 * kRoom) / box.sizes().maxCoeff();
-        middle_ = box.center();
+    void add(PlotCurve& curve, const Eigen::Vector3d& point) const {
+        curve.x.push_back(right.dot(point));
+        curve.y.push_back(up.dot(point));
     }
-
-    void add_line(const Eigen::Vector3d& from,
-                  const Eigen::Vector3d& to,
-                  const std::string& style) {
-        const Eigen::Vector2d a = px(from);
-        const Eigen::Vector2d b = px(to);
-        elements_ += svg_line(a.x(), a.y(), b.x(), b.y(), style);
-    }
-    void add_dot(const Eigen::Vector3d& at, const std::string& tone) {
-        elements_ += fmt::format(
-            R"(<path stroke-linecap="round" class="dots" style="stroke-width: 11px" {} d="M{:.1f} {:.1f}h0"/>)",
-            tone,
-            px(at).x(),
-            px(at).y());
-    }
-    void add_label(const Eigen::Vector3d& at, const std::string& text) {
-        const Eigen::Vector2d place = px(at) + Eigen::Vector2d(9.0, -7.0);
-        elements_ += svg_text(place.x(), place.y(), SvgAnchor::Start, R"(class="label")", text);
-    }
-    [[nodiscard]] std::string svg() const {
-        return svg_drawing(view_.id, view_.name, kSide, kSide, elements_);
-    }
-
-  private:
-    static constexpr double kSide = 520.0;
-    static constexpr double kRoom = 40.0;
-
-    [[nodiscard]] Eigen::Vector2d flat(const Eigen::Vector3d& point) const {
-        return {view_.right.dot(point), view_.down.dot(point)};
-    }
-    [[nodiscard]] Eigen::Vector2d px(const Eigen::Vector3d& point) const {
-        return Eigen::Vector2d::Constant(0.5 * kSide) + px_per_m_ * (flat(point) - middle_);
-    }
-
-    SledView view_;
-    double px_per_m_ = 0.0;
-    Eigen::Vector2d middle_;
-    std::string elements_;
 };
 
 // The strobes, and a line along each aim, halfway to the floor.
-std::string places_seen(const Rig& rig, const DesignResult& result, const SledView& view) {
+PagePlot places_seen(const Rig& rig, const DesignResult& result, const SledView& view) {
+    constexpr double kHeight = 560.0;
     constexpr double kHalf = 0.5;
-    constexpr std::array<std::size_t, 2> kPlaceTones{1, 2};
-    const std::array<const Design*, 2> both{&result.start, &result.best};
-    const auto aim_of = [&](const StrobePlace& place) {
-        return Eigen::Vector3d(place.position_m + kHalf * rig.sled.altitude_m * place.axis);
-    };
-    const Points floor = seen_floor(rig);
-    Points shown = floor;
-    for (const Design* design : both) {
-        for (const StrobePlace& place : design->places)
-            shown.insert(shown.end(), {place.position_m, aim_of(place)});
-    }
-    SledDrawing drawing(view, shown);
-    for (std::size_t i = 0; i < floor.size(); ++i)
-        drawing.add_line(floor[i], floor[(i + 1) % floor.size()], R"(class="guide")");
-    for (std::size_t i = 0; i < both.size(); ++i) {
-        const std::string tone = svg_tone(kPlaceTones.at(i));
-        for (const StrobePlace& place : both.at(i)->places) {
-            drawing.add_line(place.position_m, aim_of(place), R"(class="curve" )" + tone);
-            drawing.add_dot(place.position_m, tone);
+    constexpr std::size_t kFloorTone = 6;
+    const Eigen::Vector3d gap = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    Plot plot = view.plot;
+    plot.equal_axes = true;
+    PlotCurve floor{
+        .label = "the floor in view", .x = {}, .y = {}, .tone = kFloorTone, .dashed = true};
+    Points corners = seen_floor(rig);
+    if (!corners.empty()) corners.push_back(corners.front());
+    for (const Eigen::Vector3d& corner : corners) view.add(floor, corner);
+    plot.curves.push_back(std::move(floor));
+    for (const Design* design : {&result.start, &result.best}) {
+        const bool is_start = design == &result.start;
+        PlotCurve aims{.label = is_start ? "start" : "design",
+                       .x = {},
+                       .y = {},
+                       .tone = is_start ? kStartTone : kBestTone};
+        PlotCurve places{.label = "", .x = {}, .y = {}, .tone = aims.tone, .dots = true};
+        for (std::size_t s = 0; s < design->places.size(); ++s) {
+            const StrobePlace& place = design->places[s];
+            view.add(aims, place.position_m);
+            view.add(aims, place.position_m + kHalf * rig.sled.altitude_m * place.axis);
+            view.add(aims, gap);
+            view.add(places, place.position_m);
+            if (!is_start) places.points.push_back(rig.strobes[s].name);
         }
+        plot.curves.insert(plot.curves.end(), {std::move(aims), std::move(places)});
     }
-    for (std::size_t s = 0; s < result.best.places.size(); ++s)
-        drawing.add_label(result.best.places[s].position_m, rig.strobes[s].name);
-    return drawing.svg();
+    return {page_plot(view.id, {&plot, 1}, kHeight)};
 }
 
 // "26.0° to 180°": from straight down, towards that bearing from the bow, clockwise.
@@ -334,20 +273,25 @@ std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
                        was.power > 0.0 ? fmt::format("{:.3f}", is.power / was.power) : "none"}});
     }
     const SledView above{.id = "above",
-                         .name = "the strobes from above",
+                         .plot = {.title = "the strobes from above",
+                                  .x_label = "starboard (m)",
+                                  .y_label = "forward (m)",
+                                  .curves = {}},
                          .right = Eigen::Vector3d::UnitY(),
-                         .down = -Eigen::Vector3d::UnitX()};
+                         .up = Eigen::Vector3d::UnitX()};
     const SledView side{.id = "side",
-                        .name = "the strobes from starboard",
+                        .plot = {.title = "the strobes from starboard",
+                                 .x_label = "forward (m)",
+                                 .y_label = "up (m)",
+                                 .curves = {}},
                         .right = Eigen::Vector3d::UnitX(),
-                        .down = Eigen::Vector3d::UnitZ()};
+                        .up = -Eigen::Vector3d::UnitZ()};
     return {
         std::move(table),
-        "Tilts are from straight down, towards a bearing clockwise from the bow. Drawn from above, "
-        "bow up, and from starboard, bow right: the start in red, the design in green, each with "
-        "a line along its aim, half the altitude long; dashed, the floor in view.",
-        PagePlot{places_seen(rig, result, above)},
-        PagePlot{places_seen(rig, result, side)}};
+        "Tilts are from straight down, towards a bearing clockwise from the bow. Drawn from above "
+        "and from starboard: each strobe with a line along its aim, half the altitude long.",
+        places_seen(rig, result, above),
+        places_seen(rig, result, side)};
 }
 
 PageTable poses(const DesignResult& result) {

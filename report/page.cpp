@@ -180,22 +180,6 @@ PageKey stroke_key(std::string_view style, std::string words) {
             std::move(words)};
 }
 
-PageKey tone_key(std::size_t tone, std::string words) {
-    return {
-        small_drawing(
-            "stroke", 34, fmt::format(R"(<path class="curve" {} d="M2 6L32 6"/>)", svg_tone(tone))),
-        std::move(words)};
-}
-
-PageKey dot_key(std::size_t tone, std::string words) {
-    return {small_drawing("dot-key",
-                          14,
-                          fmt::format(R"(<path class="dots" style="stroke-width: 9px" )"
-                                      R"(stroke-linecap="round" {} d="M7 6h0"/>)",
-                                      svg_tone(tone))),
-            std::move(words)};
-}
-
 PageKey swatch_key(std::uint32_t colour, std::string words) {
     return {
         small_drawing(

@@ -76,9 +76,7 @@ struct PageKey {
 using PageLegend = std::vector<PageKey>;
 
 [[nodiscard]] PageKey stroke_key(std::string_view style, std::string words);  // style: as in svg.h
-[[nodiscard]] PageKey tone_key(std::size_t tone, std::string words);  // a curve of this tone
-[[nodiscard]] PageKey dot_key(std::size_t tone, std::string words);
-[[nodiscard]] PageKey swatch_key(std::uint32_t colour, std::string words);  // 0xRRGGBB
+[[nodiscard]] PageKey swatch_key(std::uint32_t colour, std::string words);    // 0xRRGGBB
 
 struct PageHeading {
     std::string text{};

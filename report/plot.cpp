@@ -21,6 +21,10 @@ constexpr double kHeight = 560.0;  // of a panel with its surroundings
 constexpr double kEdge = 24.0;
 constexpr double kPanelWidth = kWidth - kEdge - kAxisWidth;
 
+std::string dot_style(const PlotCurve& curve) {
+    return fmt::format(R"(class="dots" style="stroke-width: 9px" {})", svg_tone(curve.tone));
+}
+
 std::string curve_style(const PlotCurve& curve) {
     return fmt::format(
         R"(class="curve{}" {})", curve.dashed ? " dashed" : "", svg_tone(curve.tone));
@@ -41,8 +45,13 @@ std::string legend(const Plot& plot, double& top) {
             x = kAxisWidth;
             top += 20.0;
         }
-        svg +=
-            fmt::format(R"(<path {} d="M{} {}h{}"/>)", curve_style(curve), x, top - 4.0, kSample);
+        svg += curve.dots
+                   ? fmt::format(R"(<path stroke-linecap="round" {} d="M{} {}h0"/>)",
+                                 dot_style(curve),
+                                 x + 0.5 * kSample,
+                                 top - 4.0)
+                   : fmt::format(
+                         R"(<path {} d="M{} {}h{}"/>)", curve_style(curve), x, top - 4.0, kSample);
         svg += svg_text(x + kSample + kGap,
                         top,
                         SvgAnchor::Start,
@@ -82,6 +91,7 @@ SvgPanel panel_of(const Plot& plot) {
             y.include(curve.y[i]);
         }
     }
+    if (plot.from_zero) y.include(0.0);
     if (x.is_empty()) throw InputError("plot '{}': found no point that can be drawn", plot.title);
     SvgPanel panel{
         .left = kAxisWidth,
@@ -94,13 +104,9 @@ SvgPanel panel_of(const Plot& plot) {
     return panel;
 }
 
-// A dot for each point, with its name above and to the right.
-std::string named_points(const SvgPanel& panel, const PlotCurve& curve) {
-    std::string svg =
-        svg_dots(panel,
-                 curve.x,
-                 curve.y,
-                 fmt::format(R"(class="dots" style="stroke-width: 9px" {})", svg_tone(curve.tone)));
+// A dot for each point, with its name, if any, above and to the right.
+std::string marked_points(const SvgPanel& panel, const PlotCurve& curve) {
+    std::string svg = svg_dots(panel, curve.x, curve.y, dot_style(curve));
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
         svg += svg_text(panel.x_px(curve.x.at(i)) + 5.0,
                         panel.y_px(curve.y.at(i)) - 7.0,
@@ -111,21 +117,27 @@ std::string named_points(const SvgPanel& panel, const PlotCurve& curve) {
     return svg;
 }
 
-std::string drawing_of(const Plot& plot, double top) {
+std::string title_of(const Plot& plot, double& top) {
     constexpr double kTitle_px = 18.0;
     constexpr double kBold = 1.15;  // relative width
-    SvgPanel panel = panel_of(plot);
-    panel.top = top + kEdge + kTitle_px;
+    top += kEdge + kTitle_px;
     std::string svg =
         svg_text(kAxisWidth,
-                 panel.top,
+                 top,
                  SvgAnchor::Start,
                  R"(class="title")" + svg_fit(plot.title, kTitle_px, kPanelWidth / kBold),
                  plot.title);
-    panel.top += 6.0;
+    top += 6.0;
+    return svg;
+}
+
+std::string drawing_of(const Plot& plot, double top, double height, bool has_title) {
+    SvgPanel panel = panel_of(plot);
+    panel.top = top;
+    std::string svg = has_title ? title_of(plot, panel.top) : "";
     svg += legend(plot, panel.top);
     panel.top += 14.0;
-    panel.height = top + kHeight - kAxisHeight - panel.top;
+    panel.height = top + height - kAxisHeight - panel.top;
     if (plot.equal_axes) make_equal(panel);
     svg += svg_axes(panel);
     for (const double mark : plot.marks_x) {
@@ -134,25 +146,31 @@ std::string drawing_of(const Plot& plot, double top) {
         svg += svg_line(x, panel.top, x, panel.bottom(), R"(class="guide")");
     }
     for (const PlotCurve& curve : plot.curves) {
-        svg += svg_curve(panel, curve.x, curve.y, curve_style(curve));
-        if (!curve.points.empty()) svg += named_points(panel, curve);
+        if (!curve.dots) svg += svg_curve(panel, curve.x, curve.y, curve_style(curve));
+        if (curve.dots || !curve.points.empty()) svg += marked_points(panel, curve);
     }
     return svg + '\n';
 }
 
+// All panels, below what is drawn first.
+std::string plots_svg(std::string_view id,
+                      std::span<const Plot> panels,
+                      double height,
+                      bool is_file,
+                      std::string svg) {
+    if (panels.empty()) throw InputError("plot: found no panel to draw; allowed: one or more");
+    double top = 0.0;
+    for (const Plot& plot : panels) {
+        svg += drawing_of(plot, top, height, is_file);
+        top += height;
+    }
+    return svg_drawing(id, panels.front().title, kWidth, is_file ? top + kEdge : top, svg);
+}
+
 }  // namespace
 
-std::string plots_svg(std::span<const Plot> panels) {
-    if (panels.empty()) throw InputError("plot: found no panel to draw; allowed: one or more");
-    std::string svg = fmt::format("<style>\n{}svg {{ font-family: sans-serif; }}</style>\n",
-                                  style_sheets()[0].css);
-    svg += R"(<rect width="100%" height="100%" fill="#ffffff"/>)";
-    double height = 0.0;
-    for (const Plot& plot : panels) {
-        svg += drawing_of(plot, height);
-        height += kHeight;
-    }
-    return svg_drawing("plot", panels.front().title, kWidth, height + kEdge, svg);
+std::string page_plot(std::string_view id, std::span<const Plot> panels, double height) {
+    return plots_svg(id, panels, height, false, "");
 }
 
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file) {
@@ -163,7 +181,11 @@ void write_plots(std::span<const Plot> panels, const std::filesystem::path& file
             file.string(),
             file.extension().string());
     }
-    write_text_file(file, plots_svg(panels));
+    const std::string style = fmt::format(
+        "<style>\n{}svg {{ font-family: sans-serif; }}</style>\n"
+        R"(<rect width="100%" height="100%" fill="#ffffff"/>)",
+        style_sheets()[0].css);
+    write_text_file(file, plots_svg("plot", panels, kHeight, true, style));
 }
 
 }  // namespace aphotic

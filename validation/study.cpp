@@ -223,7 +223,7 @@ std::vector<PagePart> plot_of(const Study& study) {
     }
     if (plot.curves.empty()) return {};
     return {"Each point is a setting, named by its number of wavelengths.",
-            PagePlot{plots_svg({&plot, 1})}};
+            PagePlot{page_plot("time-plot", {&plot, 1}, 480.0)}};
 }
 
 PageTable table_of(const Study& study) {

@@ -4,6 +4,7 @@
 #include "base/upper_median.h"
 #include "report/html.h"
 #include "report/page.h"
+#include "report/plot.h"
 #include "report/svg.h"
 #include "survey/fixed_pattern_parts.h"
 
@@ -84,43 +85,26 @@ LightSeen light_seen(std::span<const ImageLook> looks) {
 }
 
 std::vector<PagePart> light_over_altitude(std::span<const ImageLook> looks) {
-    constexpr double kWidth = 960.0;
     constexpr double kHeight = 420.0;
-    constexpr double kMargin = 16.0;
-    constexpr int kTicks = 6;
     const LightSeen light = light_seen(looks);
     if (light.altitude_m.empty()) return {};
-    ValueRange altitudes;
-    altitudes.include(light.altitude_m);
-    ValueRange numbers;
+    Plot plot{.title = "light over altitude",
+              .x_label = "altitude (m)",
+              .y_label = "light (the camera’s numbers above black)",
+              .curves = {},
+              .log_y = true};
     for (std::size_t c = 0; c < kChannels; ++c) {
-        numbers.include(light.map[c]);
-        numbers.include(light.image[c]);
+        PlotCurve map{.label = fmt::format("{}: maps", kColours.at(c)),
+                      .x = light.altitude_m,
+                      .y = light.map[c],
+                      .tone = kChannelTones.at(c)};
+        PlotCurve images = map;
+        images.label = fmt::format("{}: images", kColours.at(c));
+        images.y = light.image[c];
+        images.dots = true;
+        plot.curves.insert(plot.curves.end(), {std::move(map), std::move(images)});
     }
-    SvgPanel panel{.left = kAxisWidth,
-                   .top = kMargin,
-                   .width = kWidth - kAxisWidth - kMargin,
-                   .height = kHeight - kAxisHeight - kMargin,
-                   .x = linear_axis_around(altitudes.least, altitudes.most, kTicks),
-                   .y = log_axis(numbers.least, numbers.most)};
-    panel.x.title = "altitude (m)";
-    panel.y.title = "light (the camera’s numbers above black)";
-    std::string elements = svg_axes(panel);
-    PageLegend keys;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const std::string tone = svg_tone(kChannelTones.at(c));
-        elements += svg_curve(
-            panel, light.altitude_m, light.map[c], fmt::format("class=\"curve\" {}", tone));
-        elements += svg_dots(panel,
-                             light.altitude_m,
-                             light.image[c],
-                             fmt::format("class=\"dots\" style=\"stroke-width: 7px\" {}", tone));
-        keys.push_back(tone_key(kChannelTones.at(c), kColours.at(c)));
-    }
-    keys.push_back({"", "lines: the maps"});
-    keys.push_back({"", "dots: the images"});
-    return {std::move(keys),
-            PagePlot{svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)},
+    return {PagePlot{page_plot("light-plot", {&plot, 1}, kHeight)},
             fmt::format("{} examined before the run: the mean light of each one’s map, scaled to "
                         "the images, and the light of the image, by its median pixel. Where the "
                         "rig is right, the images scatter about the lines.",

@@ -6,7 +6,7 @@
 #include "image/preview.h"
 #include "report/html.h"
 #include "report/page.h"
-#include "report/svg.h"
+#include "report/plot.h"
 #include "survey/fixed_pattern_parts.h"
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,44 +123,25 @@ std::vector<PagePart> pattern(const FitSamples& samples, const FitResult& result
                     {samples.places.width_px, samples.places.height_px});
 }
 
-constexpr double kWidth = 760.0;
-constexpr double kHeight = 300.0;
-constexpr double kTop = 12.0;
-
-SvgPanel panel_over(const ValueRange& x, const ValueRange& y) {
-    return {.left = kAxisWidth,
-            .top = kTop,
-            .width = kWidth - kAxisWidth - kTop,
-            .height = kHeight - kAxisHeight - kTop,
-            .x = linear_axis(x.least, x.most, 8),
-            .y = linear_axis_around(y.least, y.most, 6)};
-}
+constexpr double kPlotHeight = 380.0;
 
 PagePlot beam(std::size_t number, const std::vector<BeamPoint>& curve) {
-    std::vector<double> theta_deg;
-    std::vector<double> middle;
-    std::vector<double> low;
-    std::vector<double> high;
-    ValueRange x;
-    ValueRange y;
+    PlotCurve middle{.label = "fitted", .x = {}, .y = {}};
+    PlotCurve low{.label = "within twice its error", .x = {}, .y = {}, .dashed = true};
+    PlotCurve high{.label = "", .x = {}, .y = {}, .dashed = true};
     for (const BeamPoint& point : curve) {
-        theta_deg.push_back(point.theta_rad * kDegreesPerRadian);
-        middle.push_back(point.intensity);
-        low.push_back(std::max(0.0, point.intensity - 2.0 * point.error));
-        high.push_back(point.intensity + 2.0 * point.error);
-        x.include(theta_deg.back());
-        y.include(high.back());
+        for (PlotCurve* one : {&middle, &low, &high})
+            one->x.push_back(point.theta_rad * kDegreesPerRadian);
+        middle.y.push_back(point.intensity);
+        low.y.push_back(std::max(0.0, point.intensity - 2.0 * point.error));
+        high.y.push_back(point.intensity + 2.0 * point.error);
     }
-    y.include(0.0);
-    SvgPanel panel = panel_over(x, y);
-    panel.x.title = "angle off the axis [degrees]";
-    panel.y.title = "intensity [1/sr]";
-    const std::string solid = "class=\"curve\" " + svg_tone(0);
-    const std::string dashed = "class=\"curve dashed\" " + svg_tone(0);
-    const std::string drawing = svg_axes(panel) + svg_curve(panel, theta_deg, low, dashed) +
-                                svg_curve(panel, theta_deg, high, dashed) +
-                                svg_curve(panel, theta_deg, middle, solid);
-    return {svg_drawing(fmt::format("beam-{}", number), "beam", kWidth, kHeight, drawing)};
+    const Plot plot{.title = "beam",
+                    .x_label = "angle off the axis [degrees]",
+                    .y_label = "intensity [1/sr]",
+                    .curves = {low, high, middle},
+                    .from_zero = true};
+    return {page_plot(fmt::format("beam-{}", number), {&plot, 1}, kPlotHeight)};
 }
 
 std::vector<PagePart> beams(const FitResult& result) {
@@ -171,31 +153,24 @@ std::vector<PagePart> beams(const FitResult& result) {
 }
 
 std::vector<PagePart> over_altitude(const FitResult& result) {
-    std::vector<double> altitude_m;
-    std::vector<double> brightness;
-    ValueRange x;
-    ValueRange y;
+    PlotCurve images{.label = "", .x = {}, .y = {}, .dots = true};
     for (const ImageOutcome& image : result.images) {
-        altitude_m.push_back(image.sled.altitude_m);
-        brightness.push_back(std::exp(image.brightness));
-        x.include(altitude_m.back());
-        y.include(brightness.back());
+        images.x.push_back(image.sled.altitude_m);
+        images.y.push_back(std::exp(image.brightness));
     }
-    if (!(x.most > x.least)) return {};
-    y.include(0.0);
-    SvgPanel panel = panel_over(x, y);
-    panel.x.title = "altitude [m]";
-    panel.y.title = "the floor's brightness, 1 on average";
-    const std::string dots = "class=\"dots\" style=\"stroke-width: 6px\" " + svg_tone(0);
+    const bool is_one =
+        std::ranges::adjacent_find(images.x, std::ranges::not_equal_to{}) == images.x.end();
+    if (is_one) return {};
+    const Plot plot{.title = "the floor's brightness over altitude",
+                    .x_label = "altitude [m]",
+                    .y_label = "the floor's brightness, 1 on average",
+                    .curves = {images},
+                    .from_zero = true};
     return {fmt::format("The floor's brightness in each image, by the fitted light. Floors vary: "
                         "these by {}, and neighbouring blocks by {}.",
                         percent(result.level_spread),
                         percent(result.texture)),
-            PagePlot{svg_drawing("brightness",
-                                 "the floor's brightness over altitude",
-                                 kWidth,
-                                 kHeight,
-                                 svg_axes(panel) + svg_dots(panel, altitude_m, brightness, dots))}};
+            PagePlot{page_plot("brightness", {&plot, 1}, kPlotHeight)}};
 }
 
 }  // namespace
