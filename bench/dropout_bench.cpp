@@ -10,6 +10,7 @@
 // %, as at the start of a fit.
 #include "base/degrees.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "lightmap/design.h"
 #include "lightmap/planes.h"
 #include "rig/file/rig_reader.h"
@@ -23,7 +24,6 @@
 #include <Eigen/Geometry>
 
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -189,7 +189,7 @@ void judge_all(const Flown& flown, const Rig& rig, Tallies& tallies, double& sec
     }
     survey.navigation = Navigation("simulated", std::move(poses));
     survey.strobes = strobes_of_rig(rig, *survey.navigation, survey.files);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     std::vector<LightCells> all;
     for (std::size_t i = 0; i < flown.images.size(); ++i)
         all.push_back(light_cells(flown.images[i], survey, survey.files[i]));
@@ -223,7 +223,7 @@ void judge_all(const Flown& flown, const Rig& rig, Tallies& tallies, double& sec
     }
     if (std::getenv("APHOTIC_TELL") != nullptr)
         fmt::print("scales: level {:.2f} spread {:.3f}\n", scales.level, scales.spread);
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds += watch.seconds();
 }
 
 void print(const char* rig, const Tallies& tallies) {

@@ -29,6 +29,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <tuple>
+#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -41,7 +43,7 @@ struct CorrectCommandOptions {
     double tolerance = kVeilOfCorrection;
     double model_tolerance = kModelTolerance;
     std::string ifdo;
-    std::vector<double> altitudes_m;
+    std::optional<std::pair<double, double>> altitudes_m;
     CorrectionOptions correction;
     std::optional<double> electrons;
 };
@@ -184,14 +186,8 @@ Task task_of(CorrectCommandOptions& options) {
     }
     if (!has_rig && (!navigation.source.empty() || !options.input.depth.place.empty()))
         throw InputError("--map is one for all images: --nav, --depth-map and --relief need --rig");
-    if (const std::vector<double>& range = options.altitudes_m; !range.empty()) {
-        if (range[0] > range[1]) {
-            throw InputError(
-                "--altitude: found {},{}; allowed: the lower first", range[0], range[1]);
-        }
-        navigation.least_altitude_m = range[0];
-        navigation.most_altitude_m = range[1];
-    }
+    if (const auto& range = options.altitudes_m)
+        std::tie(navigation.least_altitude_m, navigation.most_altitude_m) = *range;
     return has_rig ? rig_task(options) : map_task(options);
 }
 
@@ -268,10 +264,7 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     add_option(app, "--map", options.map);
     add_option(app, "--tolerance", options.tolerance)->check(in_range(0.0, kMostTolerance));
     add_flag(app, "--no-veil", options.no_veil);
-    add_option(app, "--altitude", options.altitudes_m)
-        ->delimiter(',')
-        ->expected(2)
-        ->check(not_negative());
+    add_range(app, "--altitude", options.altitudes_m, not_negative());
 }
 
 void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {

@@ -20,8 +20,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -33,9 +34,9 @@ struct DesignCommandOptions {
     fs::path folder;
     DesignRequest request;
     double turn_deg = 30.0;
-    std::vector<double> altitude_m;
-    std::vector<double> pitch_deg;
-    std::vector<double> roll_deg;
+    std::optional<Ends> altitude_m;
+    std::optional<Ends> pitch_deg;
+    std::optional<Ends> roll_deg;
     bool strict = false;
     bool json = false;
 };
@@ -44,21 +45,18 @@ const std::map<std::string, DesignGoal> kDesignGoals{{"evenness", DesignGoal::Ev
                                                      {"signal", DesignGoal::Signal},
                                                      {"coverage", DesignGoal::Coverage}};
 
-void set_ends(const char* option, const std::vector<double>& given, double unit, Ends& ends) {
-    if (given.empty()) return;
-    if (given.front() > given.back())
-        throw InputError(
-            "{}: found {},{}; allowed: the smaller one first", option, given.front(), given.back());
-    ends = {unit * given.front(), unit * given.back()};
-}
-
 DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
     DesignRequest request = options.request;
     request.freedom.turn_rad = options.turn_deg * kRadiansPerDegree;
     request.envelope = envelope_of(rig.sled);
-    set_ends("--altitude", options.altitude_m, 1.0, request.envelope.altitude_m);
-    set_ends("--pitch", options.pitch_deg, kRadiansPerDegree, request.envelope.pitch_rad);
-    set_ends("--roll", options.roll_deg, kRadiansPerDegree, request.envelope.roll_rad);
+    Envelope& envelope = request.envelope;
+    if (options.altitude_m) envelope.altitude_m = *options.altitude_m;
+    for (const auto& [given_deg, ends_rad] : {std::pair{&options.pitch_deg, &envelope.pitch_rad},
+                                              {&options.roll_deg, &envelope.roll_rad}}) {
+        if (!*given_deg) continue;
+        for (std::size_t i = 0; i < ends_rad->size(); ++i)
+            ends_rad->at(i) = kRadiansPerDegree * (*given_deg)->at(i);
+    }
     return request;
 }
 
@@ -121,18 +119,11 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
 
 void add_envelope(CLI::App& app, DesignCommandOptions& options) {
     const OptionGroup group(app, "Envelope");
-    add_option(app, "--altitude", options.altitude_m)
-        ->delimiter(',')
-        ->expected(1, 2)
-        ->check(in_range(kLeastAltitude_m, kMostAltitude_m));
-    add_option(app, "--pitch", options.pitch_deg)
-        ->delimiter(',')
-        ->expected(1, 2)
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
-    add_option(app, "--roll", options.roll_deg)
-        ->delimiter(',')
-        ->expected(1, 2)
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    const auto tilts = in_range(-kMostTilt_deg, kMostTilt_deg);
+    add_range(
+        app, "--altitude", options.altitude_m, in_range(kLeastAltitude_m, kMostAltitude_m), 1);
+    add_range(app, "--pitch", options.pitch_deg, tilts, 1);
+    add_range(app, "--roll", options.roll_deg, tilts, 1);
 }
 
 void add_freedom(CLI::App& app, DesignCommandOptions& options) {

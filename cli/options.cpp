@@ -79,10 +79,7 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
         ->excludes(bands)
         ->excludes(fitted)
         ->excludes(tolerance);
-    add_option(app, "--paths-m", options.paths_m)
-        ->delimiter(',')
-        ->expected(2)
-        ->check(in_range(kLeastPath_m, kMostPath_m));
+    add_range(app, "--paths-m", options.paths_m, in_range(kLeastPath_m, kMostPath_m));
     add_model_tolerance(app, options.model_tolerance);
 }
 

@@ -64,6 +64,27 @@ void add_jobs(CLI::App& app, Count& jobs) {
         });
 }
 
+// LEAST,MOST, the lower first; where one number is enough, it is both.
+template <typename Range>
+CLI::Option* add_range(CLI::App& app,
+                       const std::string& name,
+                       Range& range,
+                       const CLI::Validator& allowed,
+                       int least_count = 2) {
+    const auto take = [&range, name](const std::vector<double>& ends) {
+        if (ends.front() > ends.back()) {
+            throw CLI::ValidationError(
+                name,
+                fmt::format("found {},{}; allowed: the lower first", ends.front(), ends.back()));
+        }
+        range = {ends.front(), ends.back()};
+    };
+    return add_option_function<std::vector<double>>(app, name, take)
+        ->delimiter(',')
+        ->expected(least_count, 2)
+        ->check(allowed);
+}
+
 // I/N, of work shared with other machines.
 CLI::Option* add_share(CLI::App& app, const std::string& name, WorkShare& share);
 

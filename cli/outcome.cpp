@@ -3,6 +3,7 @@
 
 #include "base/interruption.h"
 #include "base/progress.h"
+#include "base/stopwatch.h"
 #include "base/words.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
@@ -10,7 +11,6 @@
 #include "spectral/integrator.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 namespace aphotic::cli {
@@ -68,7 +68,7 @@ Integration integrate_folder(const fs::path& folder,
                              const Manifest& manifest,
                              const PreviewOptions& preview,
                              const fs::path& images) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const InterruptionHold hold;
     set_exr_threads(all_cores());
     ProgressLine line;
@@ -80,10 +80,10 @@ Integration integrate_folder(const fs::path& folder,
     const CameraImage image = is_own ? integrate(folder, manifest, report)
                                      : integrate_signals(folder, manifest, images, report);
     write_preview(image, manifest.lamp_signal, preview, images / "preview.png");
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const double integrate_s = watch.seconds();
     MadeImages made = made_images(images, image);
     made.has_spectral = is_own;
-    return {.manifest = manifest, .images = made, .seconds = elapsed.count()};
+    return {.manifest = manifest, .images = made, .seconds = integrate_s};
 }
 
 namespace {

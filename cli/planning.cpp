@@ -3,6 +3,8 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/progress.h"
+#include "base/stopwatch.h"
 #include "base/words.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
@@ -14,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <chrono>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -53,14 +54,8 @@ PlanRequest request_of(const PlanningOptions& options) {
         request.scene.ini_lines.push_back(ini_line(setting));
     }
     std::ranges::copy(scene_ini(options), std::back_inserter(request.scene.ini_lines));
-    if (!options.paths_m.empty()) {
+    if (!options.paths_m.empty())
         request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
-        if (options.paths_m[0] > options.paths_m[1]) {
-            throw InputError("--paths-m: found {},{}; allowed: the shorter first",
-                             options.paths_m[0],
-                             options.paths_m[1]);
-        }
-    }
     if (!options.emitter_lamps.empty()) {
         request.scene.emitter_lamps = {.across = options.emitter_lamps[0],
                                        .along = options.emitter_lamps[1]};
@@ -108,17 +103,16 @@ PlannedRender plan_rig(const PlanningOptions& options) {
         check_plausible(rig, options.rig_file, options.strict);
     }
     PlanRequest request = request_of(options);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     request.scene.user_scene = probed(rig, options);
-    const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
+    const double probe_s = watch.seconds();
     RenderPlan plan = [&] {
         ProgressLine line;
         line.show("planning", 0.0);
         return naming(options.rig_file, [&] { return plan_render(rig, request); });
     }();
     const auto model = model_error(rig, options.rig_file, options.model_tolerance);
-    return {
-        .rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count(), .model = model};
+    return {.rig = std::move(rig), .plan = std::move(plan), .probe_s = probe_s, .model = model};
 }
 
 SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {
@@ -156,25 +150,15 @@ RunOptions run_options(const PlanningOptions& options, int jobs) {
         .jobs = jobs, .library_paths = options.library_paths, .stall_s = options.stall_timeout_s};
 }
 
-std::function<void(const FrameProgress&)> shown_on(ProgressLine& line) {
-    return [&line](const FrameProgress& progress) {
+RenderedFrames render_frames(RunOptions options, const RenderCall& render) {
+    const Stopwatch watch;
+    ProgressLine line;
+    options.report = [&line](const FrameProgress& progress) {
         line.show(fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
                   progress.share);
     };
-}
-
-RenderedFrames render_frames(const PovRay& povray,
-                             const std::filesystem::path& folder,
-                             const SceneSet& scenes,
-                             RunOptions options) {
-    const auto start = std::chrono::steady_clock::now();
-    RenderedFrames frames;
-    ProgressLine line;
-    options.report = shown_on(line);
-    frames.result = render(povray, folder, scenes, options);
-    frames.povray_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return frames;
+    RenderResult result = render(options);
+    return {.result = std::move(result), .povray_s = watch.seconds()};
 }
 
 }  // namespace aphotic::cli

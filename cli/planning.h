@@ -3,7 +3,6 @@
 // A rig, its plan, its scenes and its frames, the same for every command that plans a render.
 #pragma once
 
-#include "base/progress.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
 #include "plugin/render.h"
@@ -41,17 +40,13 @@ struct PlannedRender {
 
 [[nodiscard]] RunOptions run_options(const PlanningOptions& options, int jobs);
 
-[[nodiscard]] std::function<void(const FrameProgress&)> shown_on(ProgressLine& line);
-
 struct RenderedFrames {
     RenderResult result;
     double povray_s = 0.0;
 };
 
-// Runs POV-Ray with a line of progress, the options' report, and measures the time.
-[[nodiscard]] RenderedFrames render_frames(const PovRay& povray,
-                                           const std::filesystem::path& folder,
-                                           const SceneSet& scenes,
-                                           RunOptions options);
+// Runs POV-Ray by the call, with a line of progress, the options' report, and measures the time.
+using RenderCall = std::function<RenderResult(const RunOptions&)>;
+[[nodiscard]] RenderedFrames render_frames(RunOptions options, const RenderCall& render);
 
 }  // namespace aphotic::cli

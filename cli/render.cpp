@@ -5,7 +5,6 @@
 
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
@@ -17,7 +16,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -39,60 +37,45 @@ struct RenderCommandOptions {
 };
 
 struct Rendered {
-    Integration integration;
+    std::optional<Integration> integration{};  // none of a share
+    fs::path folder;
     std::string povray_version;
     int jobs = 1;
-    std::size_t frames_rendered = 0;
-    std::size_t frames_kept = 0;
-    double povray_s = 0.0;
+    RenderedFrames frames;
     std::optional<double> probe_s{};  // of the user's scene
 };
 
 nlohmann::ordered_json to_json(const Rendered& rendered) {
-    nlohmann::ordered_json json = to_json(rendered.integration);
+    const auto& [result, povray_s] = rendered.frames;
+    nlohmann::ordered_json json;
+    if (rendered.integration)
+        json = to_json(*rendered.integration);
+    else
+        json["folder"] = rendered.folder.string();
     json["povray_version"] = rendered.povray_version;
-    json["jobs"] = rendered.jobs;
-    json["frames_rendered"] = rendered.frames_rendered;
-    json["frames_kept"] = rendered.frames_kept;
-    json["povray_s"] = rendered.povray_s;
+    if (rendered.integration) json["jobs"] = rendered.jobs;
+    json["frames_rendered"] = result.rendered;
+    json["frames_kept"] = result.kept;
+    json["povray_s"] = povray_s;
     if (rendered.probe_s) json["probe_s"] = *rendered.probe_s;
     return json;
 }
 
 void print(const Rendered& rendered) {
-    say("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
+    const auto& [result, povray_s] = rendered.frames;
+    say("POV-Ray {}: {} rendered, {} kept, in {:.1f} s",
         rendered.povray_version,
-        counted(rendered.frames_rendered, "frame"),
-        rendered.frames_kept,
-        rendered.povray_s,
+        counted(result.rendered, "frame"),
+        result.kept,
+        povray_s);
+    if (!rendered.integration) {
+        say("\n  {}: join the shares by `aphotic integrate`\n", rendered.folder.string());
+        return;
+    }
+    say(" with {}{}\n",
         counted(static_cast<std::size_t>(rendered.jobs), "job"),
         rendered.probe_s ? fmt::format(", after a {:.1f} s scene probe", *rendered.probe_s) : "");
-    print(rendered.integration);
-}
-
-struct RenderedShare {
-    fs::path folder;
-    RenderResult result;
-    std::string povray_version;
-    double povray_s = 0.0;
-};
-
-nlohmann::ordered_json to_json(const RenderedShare& rendered) {
-    return {{"folder", rendered.folder.string()},
-            {"povray_version", rendered.povray_version},
-            {"frames_rendered", rendered.result.rendered},
-            {"frames_kept", rendered.result.kept},
-            {"povray_s", rendered.povray_s}};
-}
-
-void print(const RenderedShare& rendered) {
-    say("POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
-        "  {}: join the shares by `aphotic integrate`\n",
-        rendered.povray_version,
-        counted(rendered.result.rendered, "frame"),
-        rendered.result.kept,
-        rendered.povray_s,
-        rendered.folder.string());
+    print(*rendered.integration);
 }
 
 ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
@@ -109,17 +92,15 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
     std::optional<FolderLock> whole;
     if (!options.share.is_whole()) whole.emplace(folder, FolderUse::Read);
     const FolderLock lock = claim_folder(own);
-    RunOptions run = run_options(options.planning, jobs_that_fit(needs, options.jobs));
-    ProgressLine line;
-    run.report = shown_on(line);
-    const auto start = std::chrono::steady_clock::now();
-    RenderedShare rendered{.folder = own,
-                           .result = render_share(povray, folder, options.share, run),
-                           .povray_version = povray.version};
-    rendered.povray_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    line.wipe();
-    show(rendered, options.json);
+    const int jobs = jobs_that_fit(needs, options.jobs);
+    show(Rendered{.folder = own,
+                  .povray_version = povray.version,
+                  .frames = render_frames(run_options(options.planning, jobs),
+                                          [&](const RunOptions& run) {
+                                              return render_share(
+                                                  povray, folder, options.share, run);
+                                          })},
+         options.json);
     return kDone;
 }
 
@@ -142,16 +123,15 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
         require_place_and_room(scenes, options.folder, options.jobs, options.planning.ignore_needs);
 
     const FolderLock lock = claim_folder(options.folder);
-    const RenderedFrames frames =
-        render_frames(povray, options.folder, scenes, run_options(options.planning, jobs));
-    const RenderResult& result = frames.result;
-    Rendered rendered{.integration = integrate_folder(
-                          options.folder, result.manifest, options.preview, options.folder),
-                      .povray_version = povray.version,
-                      .jobs = scenes.user_scene.writes_files ? 1 : jobs,
-                      .frames_rendered = result.rendered,
-                      .frames_kept = result.kept,
-                      .povray_s = frames.povray_s};
+    Rendered rendered{
+        .folder = options.folder,
+        .povray_version = povray.version,
+        .jobs = scenes.user_scene.writes_files ? 1 : jobs,
+        .frames = render_frames(run_options(options.planning, jobs), [&](const RunOptions& run) {
+            return render(povray, options.folder, scenes, run);
+        })};
+    rendered.integration = integrate_folder(
+        options.folder, rendered.frames.result.manifest, options.preview, options.folder);
     if (planned.plan.scene.user_scene) rendered.probe_s = planned.probe_s;
     show(rendered, options.json);
     return kDone;

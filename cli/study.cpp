@@ -158,11 +158,10 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
         line.reset();
         warn("{} of {}: {}", index + 1, settings.size(), settings[index].words);
         const RenderPlan& plan = planned[index].plan;
-        RenderedFrames frames =
-            render_frames(povray,
-                          its_folder,
-                          make_scene_set(rig, plan),
-                          {.jobs = study.cores, .stall_s = options.stall_timeout_s});
+        RenderedFrames frames = render_frames(
+            {.jobs = study.cores, .stall_s = options.stall_timeout_s}, [&](const RunOptions& run) {
+                return render(povray, its_folder, make_scene_set(rig, plan), run);
+            });
         return StudyFrames{.manifest = std::move(frames.result.manifest),
                            .promise = plan.promise(),
                            .render_s = frames.povray_s};

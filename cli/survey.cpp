@@ -363,24 +363,6 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
     return kDone;
 }
 
-CLI::Option* add_range(CLI::App& app,
-                       const std::string& name,
-                       std::array<double, 2>& range,
-                       const CLI::Validator& allowed) {
-    const auto take = [&range, name](const std::vector<double>& ends) {
-        if (ends[0] > ends[1]) {
-            throw CLI::ValidationError(
-                name, fmt::format("found {},{}; allowed: the lower first", ends[0], ends[1]));
-        }
-        range = {ends[0], ends[1]};
-    };
-    return add_option_function<std::vector<double>>(app, name, take)
-        ->delimiter(',')
-        ->expected(2)
-        ->check(allowed)
-        ->default_str(fmt::format("{:g},{:g}", range[0], range[1]));
-}
-
 void add_flight_options(CLI::App& app, SurveyCommandOptions& options) {
     constexpr int kMostImages = 999999;
     constexpr double kMostBias = 1000.0;
@@ -390,11 +372,15 @@ void add_flight_options(CLI::App& app, SurveyCommandOptions& options) {
     add_option(app, "--seed", options.seed);
     const auto tilts = in_range(-kMostTilt_deg, kMostTilt_deg);
     const auto altitudes = in_range(kLeastAltitude_m, kMostAltitude_m);
-    const std::vector<CLI::Option*> random{
-        images,
-        add_range(app, "--altitude", options.ranges.altitude_m, altitudes),
-        add_range(app, "--pitch", options.ranges.pitch_deg, tilts),
-        add_range(app, "--roll", options.ranges.roll_deg, tilts)};
+    std::vector<CLI::Option*> random{images};
+    FlightRanges& ranges = options.ranges;
+    for (const auto& [name, range, allowed] :
+         {std::tuple{"--altitude", &ranges.altitude_m, &altitudes},
+          {"--pitch", &ranges.pitch_deg, &tilts},
+          {"--roll", &ranges.roll_deg, &tilts}}) {
+        random.push_back(add_range(app, name, *range, *allowed));
+        random.back()->default_str(fmt::format("{:g},{:g}", (*range)[0], (*range)[1]));
+    }
     CLI::Option* flown = add_option(app, "--flight", options.flight);
     for (CLI::Option* option : random) flown->excludes(option);
     add_option(app, "--altitude-error", options.errors.altitude_m)->check(not_negative());

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/stopwatch.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
@@ -16,7 +17,6 @@
 #include "validation/traced_images.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 namespace aphotic::cli {
@@ -130,7 +130,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
                  options.folder,
                  options.planning.ignore_needs);
 
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const Tracer tracer(planned.rig, request);
     const FolderLock lock = claim_folder(options.folder);
     require_no_render(options.folder);
@@ -146,7 +146,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
                   lamp_signal(planned.rig, planned.plan.family),
                   options.preview,
                   std::filesystem::path(options.folder) / "preview.png");
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const double trace_s = watch.seconds();
 
     const std::vector<unsigned char> marks = tracer.on_edges(camera.range);
     const Traced traced{
@@ -159,7 +159,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
         .on_edges = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0)),
         .model = planned.model,
         .threads = options.threads,
-        .seconds = elapsed.count()};
+        .seconds = trace_s};
     write_text_file(std::filesystem::path(options.folder) / "trace.json",
                     json_text(to_json(traced)));
     show(traced, options.json);

@@ -43,8 +43,9 @@ Rendering render_here(const ValidateCommandOptions& options,
                       const PovRay& povray,
                       const SceneSet& scenes,
                       int jobs) {
-    const RenderedFrames frames =
-        render_frames(povray, options.folder, scenes, run_options(options.planning, jobs));
+    const RenderedFrames frames = render_frames(
+        run_options(options.planning, jobs),
+        [&](const RunOptions& run) { return render(povray, options.folder, scenes, run); });
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     rendering.integrate_s =
         integrate_folder(options.folder, rendering.manifest, {}, options.folder).seconds;

@@ -3,21 +3,15 @@
 
 #include "base/degrees.h"
 #include "base/number.h"
+#include "base/stopwatch.h"
 #include "image/exr.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 
 namespace aphotic {
 namespace {
-
-using LightmapClock = std::chrono::steady_clock;
-
-double seconds_since(LightmapClock::time_point start) {
-    return std::chrono::duration<double>(LightmapClock::now() - start).count();
-}
 
 // The planes of the file, in order, and their names.
 struct NamedPlanes {
@@ -78,12 +72,12 @@ void remove_maps(const std::filesystem::path& folder) {
 }
 
 WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request) {
-    const auto start = LightmapClock::now();
+    const Stopwatch making;
     const LightmapMaker maker(rig, std::nullopt, request.map);
-    const double tables_s = seconds_since(start);
-    const auto mapping = LightmapClock::now();
+    const double tables_s = making.seconds();
+    const Stopwatch mapping;
     Lightmap map = maker.map(rig.sled);
-    const double map_s = seconds_since(mapping);
+    const double map_s = mapping.seconds();
 
     const std::array<float, kChannels> peaks = peaks_of(map);
     if (request.is_normalised) divide_by(peaks, map);

@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "base/number.h"
 #include "base/sha256.h"
+#include "base/stopwatch.h"
 #include "image/exr.h"
 #include "report/html.h"
 #include "report/page.h"
@@ -22,7 +23,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -37,13 +37,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // The numbers of a measure by their names in JSON and CSV.
 struct NamedNumber {
@@ -107,10 +102,10 @@ StudyReference study_reference(Study& study,
         return {std::move(kept->first), std::move(on_edge)};
     }
     make_folder(folder);
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const std::vector<double> signals = tracer.rows(
         0, rig.camera.height_px, [&](double share) { hands.progress("tracing", share); });
-    study.trace_s = seconds_since(start);
+    study.trace_s = watch.seconds();
     OutputImages images(
         folder,
         rig.camera.width_px,
@@ -129,14 +124,14 @@ StudyMeasure measure(const StudySetting& setting,
                      const StudyHands& hands) {
     fs::remove_all(folder);
     const StudyFrames frames = hands.render(index, folder);
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const CameraImage image = integrate_signals(folder, frames.manifest, folder);
     StudyMeasure measure{.setting = setting,
                          .wavelengths = frames.manifest.wavelengths.size(),
                          .frames = frames.manifest.frames.size(),
                          .promise = frames.promise,
                          .render_s = frames.render_s,
-                         .integrate_s = seconds_since(start)};
+                         .integrate_s = watch.seconds()};
     measure_errors(image, reference.image, reference.on_edge, measure);
     fs::remove_all(folder);
     return measure;

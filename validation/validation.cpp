@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/validation.h"
 
+#include "base/stopwatch.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -203,15 +204,14 @@ ValidationReport validate(const Rig& rig,
                           const RenderedImages& rendered,
                           int threads,
                           const std::function<void(double)>& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ValidationReport report{.rig = rig};
     report.lambda_nm = rendered.lambda_nm;
     report.rendered = rendered.signals;
     compare_signals(rig, rendered, threads, progress, report);
     compare_radiance(rig, rendered, threads, progress, report);
     report.veil_share = traced_veil_share(rig, report.traced);
-    report.trace_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.trace_s = watch.seconds();
     return report;
 }
 

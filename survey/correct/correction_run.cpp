@@ -4,12 +4,12 @@
 #include "base/atomic_file.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
+#include "base/stopwatch.h"
 #include "survey/correct/contact_sheet.h"
 #include "survey/correct/correction_page.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 namespace aphotic {
@@ -100,7 +100,7 @@ Json to_json(const CorrectionReport& report) {
 CorrectionReport correct_survey(const Survey& survey,
                                 const CorrectionOptions& options,
                                 const RunWatch& watch) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     const fs::path& folder = options.run.folder;
     const std::unique_ptr<Corrector> corrector =
         options.baseline ? baseline_corrector(survey, options) : model_corrector(survey, options);
@@ -128,8 +128,7 @@ CorrectionReport correct_survey(const Survey& survey,
             },
         .strobes = survey.strobes.names};
     report.run = run_images(share_of(survey.files, options.share), options.run, work, watch);
-    report.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds = clock.seconds();
     write_text_file(notes, json_text(to_json(report)));
     if (options.report) {
         write_text_file(folder / kReportPage,
