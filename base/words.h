@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Words for the command's output: "1 frame", "2 frames"; a path quoted for a shell; ASCII in lower
-// case.
+// Words for the command's output: "1 frame", "2 frames"; the word of a value in a table; a path
+// quoted for a shell; ASCII in lower case.
 #pragma once
 
 #include "base/printable.h"
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,12 @@ namespace aphotic {
 
 [[nodiscard]] inline std::string counted(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+// The value is in the table.
+template <typename Value>
+[[nodiscard]] const std::string& name_of(const std::map<std::string, Value>& words, Value value) {
+    return std::ranges::find(words, value, [](const auto& word) { return word.second; })->first;
 }
 
 // The output of printf for an ASCII format: a newline in a path reaches the shell as one, and

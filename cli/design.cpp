@@ -18,7 +18,6 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,10 +39,6 @@ struct DesignCommandOptions {
     bool strict = false;
     bool json = false;
 };
-
-const std::map<std::string, DesignGoal> kDesignGoals{{"evenness", DesignGoal::Evenness},
-                                                     {"signal", DesignGoal::Signal},
-                                                     {"coverage", DesignGoal::Coverage}};
 
 DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
     DesignRequest request = options.request;

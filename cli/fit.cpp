@@ -37,11 +37,6 @@
 namespace aphotic::cli {
 namespace {
 
-const std::map<std::string, FitBeamKind> kBeams{{"table", FitBeamKind::Table},
-                                                {"cones", FitBeamKind::Cones},
-                                                {"cosine", FitBeamKind::Cosine},
-                                                {"optics", FitBeamKind::Optics}};
-
 const std::map<std::string, bool> kVignettings{{"cosine", false}, {"radial", true}};
 
 struct FitCommandOptions {
@@ -225,7 +220,7 @@ Action configure_fit(CLI::App& app) {
     add_option(app, "--images", options->input.images);
     add_navigation_options(app, options->input);
     add_depth_options(app, options->input);
-    add_option(app, "--beam", options->fit.beam)->transform(word_of(kBeams));
+    add_option(app, "--beam", options->fit.beam)->transform(word_of(kFitBeams));
     add_flag(app, "--beam-each", options->fit.has_beam_each);
     add_option(app, "--free", options->free)->delimiter(',');
     add_option(app, "--hold", options->fit.hold)->delimiter(',');

@@ -37,7 +37,8 @@ std::string angle_words(double radians) {
 void print_observation(const Observation& observation, const std::string& map_file) {
     say("{}: the {} of {} at {:.3f} m, pitch {}, roll {} on average\n",
         map_file,
-        observation.average == Average::Trimmed ? "trimmed mean" : name_of(observation.average),
+        observation.average == Average::Trimmed ? "trimmed mean"
+                                                : name_of(kAverages, observation.average),
         counted(observation.images, "image"),
         observation.sled.altitude_m,
         angle_words(observation.sled.pitch_rad),

@@ -210,7 +210,7 @@ void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white, bool 
 
 void add_dropouts(CLI::App& app, SurveyInput& input, bool corrects) {
     std::map<std::string, Dropouts> words = kDropoutWords;
-    if (!corrects) words.erase(name_of(Dropouts::Correct));
+    if (!corrects) words.erase(name_of(kDropoutWords, Dropouts::Correct));
     add_option(app, "--dropouts", input.dropouts)->transform(word_of(words));
 }
 

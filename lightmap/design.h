@@ -38,6 +38,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ struct Envelope {
 [[nodiscard]] std::vector<Sled> grid_poses(const Envelope& envelope);
 
 enum class DesignGoal { Evenness, Signal, Coverage };
+inline const std::map<std::string, DesignGoal> kDesignGoals{{"evenness", DesignGoal::Evenness},
+                                                            {"signal", DesignGoal::Signal},
+                                                            {"coverage", DesignGoal::Coverage}};
 
 struct GoalFigure {
     const char* word;

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/json_text.h"
+#include "base/words.h"
 
 #include <nlohmann/json.hpp>
 
@@ -61,7 +62,7 @@ DesignJson design_json(const Rig& rig, const DesignRequest& request, const Desig
                     {"altitude_m", request.envelope.altitude_m},
                     {"pitch_deg", degrees(request.envelope.pitch_rad)},
                     {"roll_deg", degrees(request.envelope.roll_rad)},
-                    {"goal", figure_of(request.goal).word},
+                    {"goal", name_of(kDesignGoals, request.goal)},
                     {"keep", request.keep},
                     {"coverage_level", request.level},
                     {"seed", request.seed},

@@ -221,10 +221,7 @@ void warn_of(const Fitted& fitted) {
 }
 
 FitBeamKind beam_named(const std::string& name) {
-    if (name == "table") return FitBeamKind::Table;
-    if (name == "cones") return FitBeamKind::Cones;
-    if (name == "cosine") return FitBeamKind::Cosine;
-    if (name == "optics") return FitBeamKind::Optics;
+    if (const auto found = kFitBeams.find(name); found != kFitBeams.end()) return found->second;
     throw InputError("beam: found {}; allowed: table, cones, cosine, optics", name);
 }
 

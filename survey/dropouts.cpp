@@ -229,11 +229,6 @@ double first_level(std::span<const LightCells> images) {
 
 }  // namespace
 
-std::string name_of(Dropouts dropouts) {
-    return std::ranges::find(kDropoutWords, dropouts, [](const auto& w) { return w.second; })
-        ->first;
-}
-
 int cells_across(int width_px, int height_px) {
     constexpr int kLeast_px = 4;  // of a cell: two of each mosaic site along either side
     int side = kCells;

@@ -57,7 +57,6 @@ namespace aphotic {
 enum class Dropouts { Mark, Correct, Ignore };
 inline const std::map<std::string, Dropouts> kDropoutWords{
     {"mark", Dropouts::Mark}, {"correct", Dropouts::Correct}, {"ignore", Dropouts::Ignore}};
-[[nodiscard]] std::string name_of(Dropouts dropouts);
 
 inline constexpr int kCells = 16;  // across and down, or a smaller power of two for small images
 inline constexpr double kStray = 0.01;

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/in_order.h"
+#include "base/words.h"
 #include "survey/dropout_check.h"
 #include "survey/first_look.h"
 
@@ -39,7 +40,7 @@ class BaselineRun : public Corrector {
                 {"clip", own.clip},
                 {"order", own.order},
                 {"bin_m", own.bin_m},
-                {"dropouts", name_of(survey_.dropouts)}};
+                {"dropouts", name_of(kDropoutWords, survey_.dropouts)}};
     }
 
     // A folder keeps its balance, so that later images match the others.

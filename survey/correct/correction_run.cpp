@@ -5,6 +5,7 @@
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "base/stopwatch.h"
+#include "base/words.h"
 #include "survey/correct/contact_sheet.h"
 #include "survey/correct/correction_page.h"
 
@@ -28,7 +29,7 @@ Json settings_of(const Survey& survey,
     json.update(corrector.settings());
     json["mask"] = format.mask;
     json["format"] = format.format;
-    json["compression"] = name_of(format.compression);
+    json["compression"] = name_of(kCompressions, format.compression);
     json.update(to_json(survey.camera));
     if (survey.navigation && survey.navigation->notes())
         json["navigation"] = to_json(*survey.navigation->notes());

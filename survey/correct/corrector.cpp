@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "base/parallel.h"
 #include "base/upper_median.h"
+#include "base/words.h"
 #include "survey/dropout_check.h"
 #include "survey/image_light.h"
 
@@ -282,7 +283,7 @@ class ModelCorrector : public Corrector {
                   {"read_noise", nullptr},
                   {"electrons", options_.limit.electrons_per_number},
                   {"edge_px", options_.edge_px},
-                  {"dropouts", name_of(survey_.dropouts)},
+                  {"dropouts", name_of(kDropoutWords, survey_.dropouts)},
                   {"rig_scale", nullptr}};
         if (given_)
             json["gain"] = given_->gain;

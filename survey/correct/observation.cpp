@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/in_order.h"
 #include "base/offered.h"
+#include "base/words.h"
 #include "image/exr.h"
 #include "survey/dropout_check.h"
 #include "survey/first_look.h"
@@ -265,10 +266,6 @@ std::vector<float> planes_of(const Observed& observed, const RawImage& like, boo
 
 }  // namespace
 
-std::string name_of(Average average) {
-    return std::ranges::find(kAverages, average, [](const auto& a) { return a.second; })->first;
-}
-
 Observation observe(const Survey& survey,
                     const ObservationOptions& options,
                     const RunWatch& watch) {
@@ -301,7 +298,7 @@ Observation observe(const Survey& survey,
 nlohmann::ordered_json to_json(const Observation& observation,
                                const std::filesystem::path& map_file) {
     return {{"map", map_file.string()},
-            {"average", name_of(observation.average)},
+            {"average", name_of(kAverages, observation.average)},
             {"images", observation.images},
             {"outside", observation.outside},
             {"altitude_m", observation.sled.altitude_m},
@@ -326,11 +323,11 @@ void write_observation(const std::filesystem::path& map_file, const Observation&
               std::move(channels),
               observation.planes,
               {{"aphotic:version", APHOTIC_VERSION},
-               {"aphotic:average", name_of(observation.average)},
+               {"aphotic:average", name_of(kAverages, observation.average)},
                {"aphotic:images", fmt::format("{}", observation.images)},
                {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
-               {"aphotic:pitch_deg", fmt::format("{}", sled.pitch_rad / kRadiansPerDegree)},
-               {"aphotic:roll_deg", fmt::format("{}", sled.roll_rad / kRadiansPerDegree)}});
+               {"aphotic:pitch_deg", fmt::format("{}", degrees(sled.pitch_rad))},
+               {"aphotic:roll_deg", fmt::format("{}", degrees(sled.roll_rad))}});
 }
 
 }  // namespace aphotic

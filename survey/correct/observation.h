@@ -27,7 +27,6 @@ namespace aphotic {
 
 inline const std::map<std::string, Average> kAverages{
     {"mean", Average::Mean}, {"median", Average::Median}, {"trimmed", Average::Trimmed}};
-[[nodiscard]] std::string name_of(Average average);
 
 struct ObservationOptions {
     double altitude_m = 0.0;

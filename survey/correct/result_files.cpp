@@ -218,11 +218,6 @@ void write_mask(const fs::path& file, const CorrectedImage& result, Compression 
 
 }  // namespace
 
-std::string name_of(Compression compression) {
-    return std::ranges::find(kCompressions, compression, [](const auto& c) { return c.second; })
-        ->first;
-}
-
 std::vector<fs::path> results_of(const ImageFile& file, const ResultFormat& format) {
     std::vector<fs::path> files{image_of(file, format)};
     if (format.mask) files.push_back(mask_of(file));

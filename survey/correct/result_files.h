@@ -99,7 +99,6 @@ struct ResultFormat {
 
 inline const std::map<std::string, Compression> kCompressions{
     {"none", Compression::None}, {"fast", Compression::Fast}, {"small", Compression::Small}};
-[[nodiscard]] std::string name_of(Compression compression);
 
 // The files made from an image, below the folder of results: NAME.tif, NAME.mask.png.
 [[nodiscard]] std::vector<std::filesystem::path> results_of(const ImageFile& file,

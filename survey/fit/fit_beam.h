@@ -31,6 +31,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,11 @@ inline constexpr double kMillimetres = 1e3;  // per metre; rigs give lenses in m
 inline constexpr double kFittedStep_deg = 0.5;
 
 enum class FitBeamKind { Table, Cones, Cosine, Optics, Held };
+// Those that may be asked for.
+inline const std::map<std::string, FitBeamKind> kFitBeams{{"table", FitBeamKind::Table},
+                                                          {"cones", FitBeamKind::Cones},
+                                                          {"cosine", FitBeamKind::Cosine},
+                                                          {"optics", FitBeamKind::Optics}};
 
 // In one direction.
 struct BeamValue {

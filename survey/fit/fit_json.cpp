@@ -2,11 +2,11 @@
 #include "survey/fit/fit_json.h"
 
 #include "base/degrees.h"
+#include "base/words.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <string_view>
 
 namespace aphotic {
 namespace {
@@ -34,30 +34,15 @@ FitJson covariance_json(const FitResult& result) {
     return {{"of", std::move(of)}, {"rows", std::move(rows)}};
 }
 
-std::string_view word_of(FitBeamKind kind) {
-    switch (kind) {
-        case FitBeamKind::Table:
-            return "table";
-        case FitBeamKind::Cones:
-            return "cones";
-        case FitBeamKind::Cosine:
-            return "cosine";
-        case FitBeamKind::Optics:
-            return "optics";
-        case FitBeamKind::Held:
-            break;
-    }
-    return "held";
-}
-
 FitJson source_json(const FitResult& result) {
     const auto by_altitude = [](const ImageOutcome& image) { return image.sled.altitude_m; };
+    const FitBeamKind beam = result.state.beams.front().kind();
     const auto [lowest, highest] = std::ranges::minmax(result.images, {}, by_altitude);
     return {{result.are_maps ? "maps" : "images", result.images.size()},
             {"blocks", result.blocks},
             {"block_px", result.block_px},
             {"altitude_m", {lowest.sled.altitude_m, highest.sled.altitude_m}},
-            {"beam", word_of(result.state.beams.front().kind())}};
+            {"beam", beam == FitBeamKind::Held ? "held" : name_of(kFitBeams, beam)}};
 }
 
 FitJson number_json(const FittedNumber& one) {
