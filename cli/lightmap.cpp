@@ -399,8 +399,6 @@ void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
 }  // namespace
 
 Action configure_lightmap(CLI::App& app) {
-    constexpr double kLeastError = 1e-7;
-    constexpr double kMostError = 0.1;
     const auto options = std::make_shared<LightmapCommandOptions>();
     options->map = {.error = 1e-5, .threads = all_cores()};
     add_rig(app, options->rig_file);
@@ -411,8 +409,9 @@ Action configure_lightmap(CLI::App& app) {
     add_flag(app, "--per-strobe", options->per_strobe)->excludes(exported);
     add_flag(app, "--per-cone", options->per_cone)->excludes(exported);
     add_flag(app, "--normalised", options->normalised)->excludes(exported);
-    add_option(app, "--error", options->map.error)->check(in_range(kLeastError, kMostError));
-    add_option(app, "--tolerance", options->map.veil_tolerance)->check(in_range(0.0, kMostError));
+    add_option(app, "--error", options->map.error)->check(in_range(kLeastMapError, kMostMapError));
+    add_option(app, "--tolerance", options->map.veil_tolerance)
+        ->check(in_range(0.0, kMostMapError));
     add_flag(app, "--no-veil", [options] { options->map.has_veil = false; });
     add_model_tolerance(app, options->model_tolerance);
     add_strict_option(app, options->strict);

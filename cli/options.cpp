@@ -58,10 +58,6 @@ void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeou
 }
 
 void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
-    constexpr int kMostFitted = 48;
-    constexpr int kMostBands = 100000;
-    constexpr double kLeastPath_m = 1e-6;
-    constexpr double kMostPath_m = 1e6;
     add_rig(app, options.rig_file);
     add_strict_option(app, options.strict);
     const OptionGroup group(app, kWavelengthOptions);

@@ -22,11 +22,6 @@
 
 namespace aphotic::cli {
 
-// The possible values of an option, and their meaning.
-inline constexpr double kLeastAltitude_m = 0.001;
-inline constexpr double kMostAltitude_m = 10000.0;
-inline constexpr double kMostTilt_deg = 89.9;
-
 // The number of threads that the command may use: one per core, or fewer by --jobs once that is
 // parsed.
 [[nodiscard]] int all_cores();

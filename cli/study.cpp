@@ -180,8 +180,6 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
 }  // namespace
 
 Action configure_study(CLI::App& app) {
-    constexpr int kMostFitted = 48;
-    constexpr int kMostBands = 100'000;
     const auto options = std::make_shared<StudyCommandOptions>();
     add_rig(app, options->rig_file);
     add_strict_option(app, options->strict);

@@ -29,6 +29,9 @@
 
 namespace aphotic {
 
+inline constexpr double kLeastMapError = 1e-7;
+inline constexpr double kMostMapError = 0.1;  // also of the veil
+
 struct LightmapOptions {
     // Relative, of the spectral integral and of its table. Rounding of floats adds to it, and
     // behind a port the interpolation over the index.

@@ -24,16 +24,11 @@ using NoLock = nb::call_guard<nb::gil_scoped_release>;
 
 // --- Plans --------------------------------------------------------------------------------------
 
-// With the command's own limits.
 PlanRequest request_of(double tolerance,
                        std::optional<int> fitted,
                        std::optional<int> bands,
                        const std::vector<double>& wavelengths_nm,
                        const std::optional<std::pair<double, double>>& paths_m) {
-    constexpr int kMostFitted = 48;
-    constexpr int kMostBands = 100'000;
-    constexpr double kLeastPath_m = 1e-6;
-    constexpr double kMostPath_m = 1e6;
     require_range("tolerance", tolerance, 0.0, 1.0);
     if (fitted) require_range("fitted", *fitted, 1, kMostFitted);
     if (bands) require_range("bands", *bands, 1, kMostBands);
@@ -119,10 +114,8 @@ void bind_plan(nb::module_& module) {
 // --- Lightmaps ----------------------------------------------------------------------------------
 
 LightmapOptions map_options(double error, double tolerance, bool has_veil, int threads) {
-    constexpr double kLeastError = 1e-7;
-    constexpr double kMostError = 0.1;
-    require_range("error", error, kLeastError, kMostError);
-    require_range("tolerance", tolerance, 0.0, kMostError);
+    require_range("error", error, kLeastMapError, kMostMapError);
+    require_range("tolerance", tolerance, 0.0, kMostMapError);
     return {.error = error,
             .threads = threads_of(threads),
             .has_veil = has_veil,
@@ -164,9 +157,6 @@ class RigLightmapMaker {
     [[nodiscard]] RigLightmap map(std::optional<double> altitude_m,
                                   std::optional<double> pitch_deg,
                                   std::optional<double> roll_deg) const {
-        constexpr double kLeastAltitude_m = 0.001;
-        constexpr double kMostAltitude_m = 10'000.0;
-        constexpr double kMostTilt_deg = 89.9;
         Rig rig = rig_;
         if (altitude_m) {
             require_range("altitude_m", *altitude_m, kLeastAltitude_m, kMostAltitude_m);

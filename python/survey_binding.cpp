@@ -71,63 +71,22 @@ RawImage raw_of(const RawArray& array, const std::optional<std::string>& bayer) 
     return raw;
 }
 
-struct CorrectOptions {
-    SensorLevels levels{};
-    std::optional<PerChannel> gain{};
-    std::optional<double> middle{};
-    NoiseLimit limit{};
-    int edge_px = 2;
-    bool keep_mosaic = false;
-};
-
 struct CorrectedArray {
     CorrectedImage image;
     PerChannel gain{};
 };
 
-// The correction of an image as by `aphotic correct`, in a survey or in one with this image only.
-Correction correction_of(const RawImage& raw,
-                         const RigLightmap& light,
-                         const CorrectOptions& options) {
-    Correction correction{.levels = options.levels, .limit = options.limit};
-    if (options.middle) {
-        correction.middle.fill(*options.middle);
-    } else {
-        correction.middle = floor_colour(*light.rig);
-    }
-    if (options.gain) {
-        correction.gain = *options.gain;
-        // With a given gain, how much light the median has is unknown.
-        if (!options.middle) correction.limit = {.share = options.limit.share};
-        return correction;
-    }
+// The gain of an image as by `aphotic correct`, in a survey with this image only.
+PerChannel gain_of(const RawImage& raw, const RigLightmap& light, const Correction& correction) {
     const PerChannel quotient =
-        middle_quotient(raw, light.map, options.levels, options.limit.share);
+        middle_quotient(raw, light.map, correction.levels, correction.limit.share);
+    PerChannel gain{};
     for (std::size_t c = 0; c < kChannels; ++c) {
         if (!(quotient[c] > 0.0))
             throw InputError("raw: found a channel without light or map; allowed: with a gain");
-        correction.gain[c] = correction.middle[c] / quotient[c];
+        gain[c] = correction.middle[c] / quotient[c];
     }
-    return correction;
-}
-
-CorrectedArray corrected_array(RawImage raw,
-                               const RigLightmap& light,
-                               const CorrectOptions& options) {
-    constexpr int kMostEdge_px = 1000;
-    require_range("edge_px", options.edge_px, 0, kMostEdge_px);
-    require_size(raw, light.map.width_px, light.map.height_px, "like the map");
-    const Correction correction = correction_of(raw, light, options);
-    CorrectedArray result{.image = corrected(std::move(raw), light.map, correction),
-                          .gain = correction.gain};
-    if (is_bayer(result.image.image.mosaic) && !options.keep_mosaic)
-        result.image = demosaiced(result.image);
-    const std::vector<std::uint8_t> edges =
-        ConeEdges(*light.rig).mask(light.rig->sled, options.edge_px);
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (edges[i] != 0) result.image.doubts[i] |= kEdge;
-    }
-    return result;
+    return gain;
 }
 
 CorrectedArray correct(const RawArray& array,
@@ -143,20 +102,35 @@ CorrectedArray correct(const RawArray& array,
                        double electrons,
                        int edge_px,
                        bool keep_mosaic) {
+    constexpr int kMostEdge_px = 1000;
     require_range("least_light", least_light, 0.0, 1.0);
     require_range("most_noise", most_noise, std::numeric_limits<double>::min(), 1.0);
     RawImage raw = raw_of(array, bayer);
-    const CorrectOptions options{.levels = {.black = black_level, .white = white_level},
-                                 .gain = gain,
-                                 .middle = middle,
-                                 .limit = {.share = least_light,
-                                           .relative = most_noise,
-                                           .read_noise = read_noise,
-                                           .electrons_per_number = electrons},
-                                 .edge_px = edge_px,
-                                 .keep_mosaic = keep_mosaic};
     const nb::gil_scoped_release no_lock;
-    return corrected_array(std::move(raw), light, options);
+    require_range("edge_px", edge_px, 0, kMostEdge_px);
+    require_size(raw, light.map.width_px, light.map.height_px, "like the map");
+    Correction correction{.levels = {.black = black_level, .white = white_level},
+                          .limit = {.share = least_light,
+                                    .relative = most_noise,
+                                    .read_noise = read_noise,
+                                    .electrons_per_number = electrons}};
+    if (middle) {
+        correction.middle.fill(*middle);
+    } else {
+        correction.middle = floor_colour(*light.rig);
+    }
+    correction.gain = gain ? *gain : gain_of(raw, light, correction);
+    // With a given gain, how much light the median has is unknown.
+    if (gain && !middle) correction.limit = {.share = least_light};
+    CorrectedArray result{.image = corrected(std::move(raw), light.map, correction),
+                          .gain = correction.gain};
+    if (is_bayer(result.image.image.mosaic) && !keep_mosaic)
+        result.image = demosaiced(result.image);
+    const std::vector<std::uint8_t> edges = ConeEdges(*light.rig).mask(light.rig->sled, edge_px);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (edges[i] != 0) result.image.doubts[i] |= kEdge;
+    }
+    return result;
 }
 
 Array<float, 3> corrected_image(nb::handle self) {

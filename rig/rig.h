@@ -28,6 +28,11 @@ namespace aphotic {
 // Attitude and height. The floor is the plane through (0, 0, altitude_m), level in the world,
 // so in the sled frame it is tilted by pitch (positive bow up) and roll (positive starboard
 // down).
+// Wherever a pose comes from. Wide enough for any sled, narrow enough to catch a wrong unit.
+inline constexpr double kLeastAltitude_m = 0.001;
+inline constexpr double kMostAltitude_m = 10000.0;
+inline constexpr double kMostTilt_deg = 89.9;
+
 struct Sled {
     double altitude_m = 0.0;
     double pitch_rad = 0.0;

@@ -32,6 +32,12 @@ namespace aphotic {
 // The lamps of an emitter err by 1e-4 (geometry.h), the reference's by a fifth of that.
 inline constexpr double kLampError = 1.2e-4;
 
+// What may be requested.
+inline constexpr int kMostFitted = 48;
+inline constexpr int kMostBands = 100'000;
+inline constexpr double kLeastPath_m = 1e-6;
+inline constexpr double kMostPath_m = 1e6;
+
 struct PlanRequest {
     double tolerance = 1e-3;             // the fewest fitted wavelengths that achieve it
     std::optional<int> fitted;           // or this number, whatever their error

@@ -48,8 +48,8 @@ constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
 constexpr std::size_t kMostCones = 100'000;
 
 // Limits of a rig. Wide enough for any sled, narrow enough to catch a wrong unit.
-constexpr Bounds kAltitudeM{0.001, 10000.0};
-constexpr Bounds kTiltDeg{-89.9, 89.9};
+constexpr Bounds kAltitudeM{kLeastAltitude_m, kMostAltitude_m};
+constexpr Bounds kTiltDeg{-kMostTilt_deg, kMostTilt_deg};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
 constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};

@@ -90,13 +90,12 @@ std::string words_of(const NavigationNotes& notes) {
 
 namespace {
 
-// A rig file has the same limits.
 struct Bounds {
     double least;
     double most;
 };
-constexpr Bounds kAltitude_m{0.001, 10000.0};
-constexpr Bounds kTilt_deg{-89.9, 89.9};
+constexpr Bounds kAltitude_m{kLeastAltitude_m, kMostAltitude_m};
+constexpr Bounds kTilt_deg{-kMostTilt_deg, kMostTilt_deg};
 
 // The file's name without its folder (with either kind of slash) and without an image extension.
 std::string name_in(std::string_view image) {
