@@ -271,5 +271,28 @@ TEST(WritePlots, SaysWhenTheFileCannotBeWritten) {
     EXPECT_THROW(write_plots(two_panels(), folder.path() / "none" / "a.svg"), RunError);
 }
 
+TEST(PagePlot, HasNeitherStyleNorTitleAndDrawsDotsWithoutALine) {
+    constexpr double kHeight = 300.0;
+    Plot plot = some_plot();
+    plot.curves[0].dots = true;
+    const std::string svg = page_plot("an-id", {&plot, 1}, kHeight);
+    EXPECT_TRUE(contains(svg, "id=\"an-id\"")) << svg;
+    EXPECT_TRUE(contains(svg, "class=\"dots\""));
+    EXPECT_FALSE(contains(svg, "<style>"));
+    EXPECT_FALSE(contains(svg, ">Title<"));
+    EXPECT_EQ(curves_in(svg).size(), 1U) << "the other curve";
+    EXPECT_LT(frames_in(svg).at(0).bottom, kHeight);
+}
+
+TEST(PagePlot, StartsAtZeroWhereAsked) {
+    Plot plot{"", "x", "y", {{"", {0.0, 1.0}, {9.0, 10.0}, 0}}};
+    plot.from_zero = true;
+    const std::string svg = page_plot("p", {&plot, 1}, 300.0);
+    const Frame frame = frames_in(svg).at(0);
+    const auto points = points_of(curves_in(svg).at(0));
+    EXPECT_NEAR(points[0][1], std::lerp(frame.bottom, frame.top, 0.9), kDecimals);
+    EXPECT_NEAR(points[1][1], frame.top, kDecimals);
+}
+
 }  // namespace
 }  // namespace aphotic::plot_test

@@ -361,7 +361,7 @@ TEST(StudyPage, HoldsAnyNumbersAndNames) {
     EXPECT_EQ(first_unbalanced(page), "");
     EXPECT_FALSE(contains(page, "<script"));
     EXPECT_FALSE(contains(page, "<b>"));
-    EXPECT_FALSE(contains(page, "id=\"plot\"")) << "nothing to draw";
+    EXPECT_FALSE(contains(page, "id=\"time-plot\"")) << "nothing to draw";
     study.measures.clear();
     EXPECT_TRUE(contains(words_of(written(study, "study.html")), "0 settings"));
 }
