@@ -115,7 +115,7 @@ struct Candidate {
 
 bool is_as_good(const LightFigures& a, const LightFigures& b) {
     return std::ranges::all_of(
-        kGoalFigures, [&](const GoalFigure& one) { return a.*one.figure >= b.*one.figure; });
+        kGoalFigures, [&](double LightFigures::*figure) { return a.*figure >= b.*figure; });
 }
 
 // The Pareto-optimal designs among all that were seen.
@@ -136,18 +136,18 @@ class Archive {
 };
 
 double goal_of(DesignGoal goal, const LightFigures& figures) {
-    return figures.*figure_of(goal).figure;
+    return figures.*figure_of(goal);
 }
 
 LightFigures times(LightFigures figures, double factor) {
-    for (const GoalFigure& one : kGoalFigures) figures.*one.figure *= factor;
+    for (double LightFigures::*figure : kGoalFigures) figures.*figure *= factor;
     return figures;
 }
 
 // The least that a design must have of each figure.
 LightFigures least_of(const DesignRequest& request, const LightFigures& start) {
     LightFigures least = times(start, request.keep);
-    least.*figure_of(request.goal).figure = 0.0;
+    least.*figure_of(request.goal) = 0.0;
     return least;
 }
 

@@ -67,14 +67,10 @@ inline const std::map<std::string, DesignGoal> kDesignGoals{{"evenness", DesignG
                                                             {"signal", DesignGoal::Signal},
                                                             {"coverage", DesignGoal::Coverage}};
 
-struct GoalFigure {
-    const char* word;
-    double LightFigures::*figure;
-};
-inline constexpr std::array<GoalFigure, 3> kGoalFigures{{{"evenness", &LightFigures::evenness},
-                                                         {"signal", &LightFigures::signal_to_noise},
-                                                         {"coverage", &LightFigures::coverage}}};
-[[nodiscard]] constexpr const GoalFigure& figure_of(DesignGoal goal) {
+// By goal.
+inline constexpr std::array<double LightFigures::*, 3> kGoalFigures{
+    &LightFigures::evenness, &LightFigures::signal_to_noise, &LightFigures::coverage};
+[[nodiscard]] constexpr double LightFigures::*figure_of(DesignGoal goal) {
     return kGoalFigures.at(static_cast<std::size_t>(goal));
 }
 
