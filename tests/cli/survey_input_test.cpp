@@ -104,7 +104,7 @@ class SurveyInput : public CommandTest {
                 .white = kWhite};
     }
     void write_dng(const std::string& name, const Dng& dng) const {
-        write_file(path("raw/" + name), DngWriter::bytes(dng));
+        write_file(path("raw/" + name), dng_of(dng));
     }
 
     // By the map, into floats.

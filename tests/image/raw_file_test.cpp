@@ -42,7 +42,7 @@ Dng small_dng() {
 class RawFileTest : public testing::Test {
   protected:
     [[nodiscard]] RawFile opened(const Dng& dng) const {
-        write_file(file_, DngWriter::bytes(dng));
+        write_file(file_, dng_of(dng));
         return open_raw_file(file_);
     }
 
@@ -113,7 +113,7 @@ TEST_F(RawFileTest, ALinearDngHasThreePlanes) {
 TEST_F(RawFileTest, WhatIsCutAnywhereIsRefusedOrHasAllItsNumbers) {
     constexpr std::size_t kCuts = std::max(cases(60), 20);
     const Dng dng = small_dng();
-    const std::string bytes = DngWriter::bytes(dng);
+    const std::string bytes = dng_of(dng);
     const std::vector<float> whole(dng.samples.begin(), dng.samples.end());
     std::size_t refused = 0;
     for (std::size_t cut = 0; cut < kCuts; ++cut) {

@@ -4,20 +4,14 @@
 // specification: PNG (ISO/IEC 15948), JPEG (ITU T.81), TIFF 6.0 and OpenEXR.
 #pragma once
 
+#include "support/tiff_writer.h"
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace aphotic {
-
-inline void put_little(std::string& bytes, std::uint64_t number, unsigned size) {
-    for (unsigned i = 0; i < size; ++i) bytes += static_cast<char>(number >> 8 * i & 0xFFU);
-}
-
-inline void put_big(std::string& bytes, std::uint64_t number, unsigned size) {
-    for (unsigned i = size; i-- > 0;) bytes += static_cast<char>(number >> 8 * i & 0xFFU);
-}
 
 // With its length, its four letters and its CRC-32.
 inline std::string png_chunk(const std::string& letters, const std::string& contents) {
@@ -63,25 +57,16 @@ inline std::string jpeg_of_size(std::uint32_t width, std::uint32_t height) {
 // the bytes, deflated by name.
 inline std::string tiff_of_tags(std::map<std::uint16_t, std::uint32_t> tags,
                                 const std::string& pixels) {
-    constexpr std::size_t kEntry = 12;
-    const bool is_tiled = tags.contains(322);
     tags.insert({{258, 16}, {259, 8}, {262, 1}, {277, 1}});
-    tags[is_tiled ? 324 : 273] = 0;
-    tags[is_tiled ? 325 : 279] = static_cast<std::uint32_t>(pixels.size());
-    tags[is_tiled ? 324 : 273] = static_cast<std::uint32_t>(8 + 2 + tags.size() * kEntry + 4);
-    std::string bytes = "II";
-    put_little(bytes, 42, 2);
-    put_little(bytes, 8, 4);
-    put_little(bytes, tags.size(), 2);
+    TiffWriter tiff;
     for (const auto& [tag, value] : tags) {
-        const bool is_short = tag == 258 || tag == 259 || tag == 262 || tag == 277;
-        put_little(bytes, tag, 2);
-        put_little(bytes, is_short ? 3 : 4, 2);
-        put_little(bytes, 1, 4);
-        put_little(bytes, value, 4);
+        if (tag == 258 || tag == 259 || tag == 262 || tag == 277) {
+            tiff.shorts(tag, {value});
+        } else {
+            tiff.longs(tag, {value});
+        }
     }
-    put_little(bytes, 0, 4);
-    return bytes + pixels;
+    return tiff.file(pixels, TiffOrder::DirectoryValuesPixels);
 }
 
 struct ExrSides {
