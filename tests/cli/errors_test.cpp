@@ -3,6 +3,7 @@
 // What goes wrong for users: one clear message, the right exit status, nothing half written.
 #include "support/command_test.h"
 #include "support/has.h"
+#include "support/mistakes.h"
 #include "support/scene_text.h"
 
 #include <fmt/format.h>
@@ -63,44 +64,11 @@ TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
 }
 
 TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
-    const std::string observe = "observe raw --nav n -o m.exr --altitude ";
-    const std::string correct = "correct raw --rig rig.toml --nav n -o out ";
-    for (const auto& [command, why] : Cases{
-             {observe + "2 --trim 0.5", "--trim: found 0.5; allowed: 0 to 0.49"},
-             {observe + "-1", "--altitude: found -1; allowed: more than 0"},
-             {correct + "--altitude 3", "--altitude: found 1 value; allowed: LEAST,MOST"},
-             {observe + "2 --within inf", "--within: found inf; allowed: 0 or more"},
-             {observe + "2 --longest-gap-s 0", "--longest-gap-s: found 0; allowed: more than 0"},
-             {observe + "2 --clock-offset-s x", "--clock-offset-s"},
-             {observe + "2 --allow-skipped 2%%",
-              "--allow-skipped: found '2%%'; allowed: a number of images, or a share such as 0.01 "
-              "or 1%"},
-             {correct + "--columns alt=h",
-              "--columns: found 'alt=h'; allowed: NAME=COLUMN, NAME one of image, time, "
-              "altitude_m, pitch_deg, roll_deg, east_m, north_m, heading_deg, depth_m"},
-             {correct + "--columns image=", "--columns: found 'image='; allowed: NAME=COLUMN"},
-             {correct + "--angles-in grad", "--angles-in"},
-             {correct + "--image-time YYMM",
-              "--image-time: found 'YYMM', in which YYYY is split; allowed: YYYY, MM, DD"},
-             {correct + "--altitude-is up", "--altitude-is"},
-             {"baseline homomorphic raw -o out --nav n --altitude-offset-m 1001",
-              "--altitude-offset-m: found 1001; allowed: -1000 to 1000"},
-             {"baseline homomorphic raw -o out --allow-skipped 1.01",
-              "--allow-skipped: found '1.01'; allowed: a number of images, or a share"},
-             {"baseline altitude-exponential raw -o out --bin 0",
-              "--bin: found 0; allowed: 0.001 to 10000"},
-             {"compare a.exr --patches p.csv --encoding gamma",
-              "--encoding: gamma not in {linear,srgb}"},
-             {"lightmap rig.toml -o out --altitude 1 --export oplap",
-              "--export: oplap not in {oplab}"},
-             {"lightmap rig.toml -o map.exr --altitude-m nan", "found nan; allowed: "},
-             {"lightmap rig.toml -o map.png",
-              "--output: found map.png; allowed: a name that ends in .exr"},
-             {"trace rig.toml -o out --threads 0", "--jobs: found 0; allowed: 1 to "},
-             {"plan rig.toml --tolerance nan", "found nan; allowed: "},
-             {"plan rig.toml --plot plan.png",
-              "--plot: found plan.png; allowed: a name that ends in .svg"}})
-        refused(command, why);
+    for (const Mistake& mistake : mistakes_in("cli/mistakes/numbers_and_names.txt", 22)) {
+        SCOPED_TRACE(testing::PrintToString(mistake));
+        const auto& [command, rest] = mistake.parts.front();
+        refused(command + " " + rest, mistake.message);
+    }
 }
 
 // What a script passes for a variable that it never set: the folder that it runs in is not meant.

@@ -120,59 +120,10 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
     const std::string words = "--wavelengths 450,500,550,600";
     done("generate rig.toml -o generated " + words);
     // What a command needs is told beforehand (cli/needs_test): here the disk fills under way.
-    // Each line of the result: command, KiB left, status, message in one line; then what is amiss.
-    std::string script =
-        "mkdir disk\n"
-        "fill() { dd if=/dev/zero of=disk/fill bs=1k 2>/dev/null; truncate -s -$1k disk/fill; }\n"
-        "same() { cmp -s $1 $2 || echo \"amiss: $1 is not $2\"; }\n"
-        "try() {\n"
-        "  name=$1; kib=$2; expected=$3; shift 3\n"
-        "  fill $kib; \"$APHOTIC\" \"$@\" >/dev/null 2>err; status=$?\n"
-        "  echo \"$name $kib $status $(tr '\\n' ' ' <err)\"\n"
-        "  find disk -name '.*.part*' -o -name '*.pov-state' | sed 's/^/amiss: /'\n"
-        "  for image in disk/out/image.exr disk/out/spectral.exr; do\n"
-        "    [ ! -e $image ] || same $image $expected/${image##*/}\n"
-        "  done\n"
-        "  rm disk/fill\n"
-        "  \"$APHOTIC\" \"$@\" >/dev/null || echo \"amiss: $name with space\"\n"
-        "  if [ $expected = generated ]; then\n"
-        "    diff -r $expected disk/out | sed 's/^/amiss: /'\n"
-        "  else\n"
-        "    same disk/out/image.exr $expected/image.exr\n"
-        "    same disk/out/spectral.exr $expected/spectral.exr\n"
-        "  fi\n"
-        "}\n"
-        "for kib in 0 8 36 44 52; do\n"
-        "  mount -t tmpfs -o size=512k none disk\n"
-        "  try render $kib out render rig.toml --ignore-needs -o disk/out " +
-        words +
-        "\n"
-        "  umount disk\n"
-        "done\n"
-        "for kib in 0 8 28; do\n"
-        "  mount -t tmpfs -o size=512k none disk\n"
-        "  try generate $kib generated generate rig.toml --ignore-needs -o disk/out " +
-        words +
-        "\n"
-        "  umount disk\n"
-        "done\n"
-        "for kib in 0 8 16; do\n"
-        "  mount -t tmpfs -o size=512k none disk\n"
-        "  try trace $kib traced trace rig.toml --ignore-needs -o disk/out\n"
-        "  umount disk\n"
-        "done\n"
-        // Over the results of an earlier run, which stay.
-        "for kib in 0 8; do\n"
-        "  mount -t tmpfs -o size=512k none disk\n"
-        "  cp -r out disk/out\n"
-        "  try again $kib out render rig.toml --ignore-needs -o disk/out " +
-        words +
-        "\n"
-        "  try integrate $kib out integrate --ignore-needs disk/out\n"
-        "  umount disk\n"
-        "done\n";
     int failed = 0;
-    for (const std::string& line : in_a_namespace(script)) {
+    for (const std::string& line :
+         in_a_namespace("WORDS='" + words + "'\n" +
+                        read_text_file(APHOTIC_SOURCE_DIR "/tests/cli/full_disk.sh"))) {
         EXPECT_FALSE(line.starts_with("amiss")) << line;
         std::istringstream fields(line);
         std::string name;

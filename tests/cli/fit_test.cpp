@@ -8,6 +8,7 @@
 #include "rig/file/rig_reader.h"
 #include "support/command_test.h"
 #include "support/fit_rig.h"
+#include "support/mistakes.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -393,43 +394,10 @@ TEST_F(CommandFit, SaysWhatItNeeds) {
         "[[object]]\nname = \"ball\"\nshape = \"sphere\"\ncentre_m = [0.0, 0.0, 1.8]\n"
         "radius_m = 0.1\nreflectance = \"sand\"\n";
     write_text_file(path("ball.toml"), fit_rig({}).text() + object);
-    const std::string prior = "allowed: WORD=SPREAD, each word once, such as aim=2deg";
-    const std::string words = "allowed: beam, aim, power, water, vignetting, floor, tint, ";
-    const std::string no_beam = ": found with a beam that is not fitted; allowed: with beam free";
-    const std::string maps = "fit rig.toml --maps a.exr -o fitted ";
-    for (const auto& [line, why] : Cases{
-             {"fit rig.toml -o fitted", "found neither --maps nor --images; allowed: either"},
-             {maps + "--images .", "found --maps and --images; allowed: either"},
-             {"fit rig.toml --images . -o fitted", "--images: found no navigation; allowed: with"},
-             {"fit rig.toml --maps b.exr -o fitted", "b.exr: cannot be read: No such file"},
-             {"fit ball.toml --maps a.exr -o fitted", "ball.toml: found 1 object; allowed: none"},
-             {maps + "--set seafloor.phong=0.1", "seafloor.phong: found 0.1; allowed: 0, a matt"},
-             {maps + "--nav a.txt", "--nav: found with --maps; allowed: with --images"},
-             {maps + "--depth-map .", "--depth-map: found with --maps; allowed: with --images"},
-             {"fit rig.toml --images . -o fitted --depth-unit mm", "--depth-unit"},
-             {"fit rig.toml --images a.exr --depth-map . --normals floor -o fitted",
-              "--normals floor needs --nav, which gives the floor's orientation"},
-             {"fit rig.toml --images a.exr --depth-map nowhere -o fitted", "--depth-map: "},
-             {maps + "--bayer RGGB", "--bayer: found with --maps; allowed: with --images"},
-             {maps + "--beam cosine --free aim", "--beam" + no_beam},
-             {maps + "--beam-each --hold beam", "--beam" + no_beam},
-             {maps + "--vignetting radial --free aim",
-              "--vignetting: found with a lens that is not"},
-             {maps + "--prior power=0.1 --free aim", "--prior: found 'power', which is not fitted"},
-             {maps + "--free floor", "--free: found floor in water that does not scatter"},
-             {maps + "--free aim,aims", "--free: found 'aims'; " + words},
-             {maps + "--hold water.multipel", "--hold: found 'water.multipel'; " + words},
-             {maps + "--prior watre=1", "--prior: found 'watre'; " + words},
-             {maps + "--prior aim", "--prior: found 'aim'; " + prior},
-             {maps + "--prior power=0.1,aim=", "--prior: found 'aim='; " + prior},
-             {maps + "--prior aim=0deg", "--prior: found 0 of aim; allowed: a standard"},
-             {maps + "--prior aim=2m", "--prior: found 'aim=2m'; " + prior},
-             {maps + "--prior aim=1,aim=2", "--prior: found 'aim=2'; " + prior},
-             {maps + "--prior aim=wide", "--prior: found 'aim=wide'; " + prior},
-             {maps + "--prior aim=inf", "--prior: found inf of aim; allowed: a standard"},
-             {maps + "--vignetting cos", "--vignetting"},
-             {maps + "--parts 20", "--parts"}}) {
-        const CommandResult run = refused(line, why);
+    for (const Mistake& mistake : mistakes_in("cli/mistakes/fit.txt", 29)) {
+        SCOPED_TRACE(testing::PrintToString(mistake));
+        const auto& [command, rest] = mistake.parts.front();
+        const CommandResult run = refused(command + " " + rest, mistake.message);
         EXPECT_LE(std::ranges::count(run.err, '\n'), 2) << run.err;
     }
     // Before the images are read, which take longer.

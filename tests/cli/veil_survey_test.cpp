@@ -6,6 +6,7 @@
 #include "image/exr.h"
 #include "support/has.h"
 #include "support/run_command.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -30,38 +31,9 @@ constexpr double kFlat = 0.02;
 constexpr double kRight = 1e-3;
 
 std::string rig_over(int percent, const std::string& altitude_m) {
-    return fmt::format(R"(title = "Coastal survey"
-[sled]
-altitude_m = {}
-pitch_deg = 5.0
-[camera]
-resolution = [34, 26]
-pixel_pitch_um = 258.0
-focal_length_mm = 12.0
-range_nm = [400, 700]
-response = "nikon-d5100"
-[water]
-type = "jerlov-1C"
-phase = {{ fournier_forand = {{ backscatter_ratio = 0.0135 }} }}
-[seafloor]
-reflectance = "grey{}.csv"
-[beam.lamp]
-cones = [{{ part = "all", half_angle_deg = 90.0, exponent = 3.0, weight = 1.0 }}]
-[[strobe]]
-name = "port"
-position_m = [0.0, -0.5, 0.0]
-aim = {{ tilt_deg = 26.0, toward = "axis" }}
-beam = "lamp"
-spectrum = "xenon-flash"
-[[strobe]]
-name = "starboard"
-position_m = [0.0, 0.5, 0.0]
-aim = {{ tilt_deg = 26.0, toward = "axis" }}
-beam = "lamp"
-spectrum = "xenon-flash"
-)",
-                       altitude_m,
-                       percent);
+    return with(
+        read_text_file(APHOTIC_SOURCE_DIR "/tests/cli/coastal_survey.toml"),
+        {{"altitude_m", altitude_m}, {"reflectance", fmt::format("\"grey{}.csv\"", percent)}});
 }
 
 class VeilSurvey : public testing::Test {

@@ -5,6 +5,8 @@
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "scene_gen/quick_look.h"
+#include "support/has.h"
+#include "support/mistakes.h"
 #include "support/povray_scene.h"
 
 #include <gtest/gtest.h>
@@ -490,7 +492,7 @@ TEST_F(AphoticInc, AnotherGammaIsIgnoredAloud) {
         std::string(kCamera) + "Aphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n" + kFloor;
     const PovRayRun spoilt =
         run(in_band(odd_band(), "global_settings { assumed_gamma 2.2 }\n" + scene));
-    EXPECT_NE(spoilt.said().find("New instance of assumed_gamma ignored"), std::string::npos);
+    EXPECT_TRUE(has(spoilt.said(), "New instance of assumed_gamma ignored"));
     expect_equal_images(spoilt, well(in_band(odd_band(), scene)), 0.0);
 }
 
@@ -499,15 +501,15 @@ TEST_F(AphoticInc, KeepsTheLanguageVersionOfTheScene) {
         "#version 3.6;\n" + band_sdl(odd_band()) +
         "#include \"aphotic.inc\"\n#include \"aphotic.inc\"\n#debug concat(\"version \", "
         "str(version, 0, 1), \"\\n\")\ncamera { location 0 } sphere { 9, 1 }\n";
-    EXPECT_NE(run(sdl).said().find("version 3.6"), std::string::npos);
+    EXPECT_TRUE(has(run(sdl).said(), "version 3.6"));
 }
 
 TEST_F(AphoticInc, TellsOfItselfWhenAsked) {
     const PovRayRun result =
         run("#version 3.7;\n#declare View_POV_Include_Stack = true;\n"
             "#include \"aphotic.inc\"\ncamera { location 0 } sphere { 9, 1 }\n");
-    EXPECT_NE(result.log.find("including aphotic.inc"), std::string::npos) << result.log;
-    EXPECT_NE(result.log.find("including aphotic_quick.inc"), std::string::npos) << result.log;
+    EXPECT_TRUE(has(result.log, "including aphotic.inc"));
+    EXPECT_TRUE(has(result.log, "including aphotic_quick.inc"));
 }
 
 // --- The quick look --------------------------------------------------------------------------
@@ -535,9 +537,7 @@ TEST_F(AphoticInc, AQuickLookShowsAnUnknownSpectrumAsGreyAloud) {
         run("#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
             "plane { -z, -2 pigment { Aphotic_Pigment (\"rust.csv\") } }\n");
     EXPECT_TRUE(result.end.succeeded());
-    EXPECT_NE(result.said().find("a quick look shows \"rust.csv\" as grey. It knows: sand"),
-              std::string::npos)
-        << result.said();
+    EXPECT_TRUE(has(result.said(), "a quick look shows \"rust.csv\" as grey. It knows: sand"));
 }
 
 // The file in the repository is the generator's.
@@ -557,192 +557,25 @@ TEST(QuickLook, IsWhatTheGeneratorWrites) {
 
 // --- Errors ----------------------------------------------------------------------------------
 
-struct Misuse {
-    const char* name;
-    std::string sdl;      // after the include
-    std::string message;  // in POV-Ray's words
-};
-
-void PrintTo(const Misuse& misuse, std::ostream* out) {
-    *out << misuse.name;
+std::vector<Mistake> misuses() {
+    return mistakes_in("plugin/mistakes/aphotic_inc.txt", 50);
 }
 
-const std::string kLambert = "#declare Lambert = function (x, y, z) { max(0, z) / pi }\n";
-const std::string kBeam = "#declare Beam = array[1][2] {{60, 1}}\n";
-
-const std::vector<Misuse> kMisuses{
-    {"UnknownReflectance",
-     "plane { z, 1 pigment { Aphotic_Pigment (\"sandy\") } }",
-     "Aphotic_Pigment: found \"sandy\"; allowed in this frame: light dark"},
-    {"LongReflectance",
-     "plane { z, 1 pigment { Aphotic_Pigment (\"" + std::string(61, 'x') + "\") } }",
-     "Aphotic_Pigment: allowed: a name of at most 60 characters; found xxx"},
-    {"NegativePhong",
-     "plane { z, 1 finish { Aphotic_Finish (-1, 40) } }",
-     "Aphotic_Finish: found Phong -1"},
-    {"NegativePhongSize",
-     "plane { z, 1 finish { Aphotic_Finish (1, -40) } }",
-     "Aphotic_Finish: found Phong_Size -40"},
-    {"NoUnit",
-     "#declare Aphotic_Unit = 0; Aphotic_Cone (0, z, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: found Aphotic_Unit 0"},
-    {"UnitAfterTheStrobes",
-     "Aphotic_Cone (0, z, 90, 1, \"arc\", 1)\n#declare Aphotic_Unit = 0.01;\nAphotic_Water ()",
-     "Aphotic_Water: found Aphotic_Unit 0.010000, declared after macros that took it for "
-     "1.000000;"},
-    {"SledAfterTheCamera",
-     "Aphotic_Camera (1, 1)\n#declare Aphotic_Sled = transform { translate x }\n"
-     "Aphotic_Cone (0, z, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: found Aphotic_Sled declared or changed after Aphotic_Camera;"},
-    {"SledThatScales",
-     "#declare Aphotic_Sled = transform { scale 2 }\nAphotic_Camera (1, 1)",
-     "Aphotic_Camera: found an Aphotic_Sled that makes x, y and z 2.000000, 2.000000 and 2.000000 "
-     "long"},
-    {"SoftEdgeAfterTheStrobes",
-     "Aphotic_Cone (0, z, 60, 1, \"arc\", 1)\n#declare Aphotic_Soft_Edge = 2;\nAphotic_End ()",
-     "Aphotic_End: found Aphotic_Soft_Edge 2.000000, declared after the macros that it is for;"},
-    {"FinishAfterTheSeafloor",
-     "Aphotic_Seafloor (2, 0, 0, \"light\")\n"
-     "#declare Aphotic_Seafloor_Finish = finish { phong 1 }\nAphotic_End ()",
-     "Aphotic_End: found Aphotic_Seafloor_Finish, declared after Aphotic_Seafloor;"},
-    {"WaterTwice", "Aphotic_Water () Aphotic_Water ()", "Aphotic_Water: called twice"},
-    {"WaterInAContainer",
-     "sphere { 0, 9 hollow pigment { rgbt 1 } interior { Aphotic_Water () } }",
-     "in 'interior', background found instead"},
-    {"HalfAngleOfIntensity",
-     "#declare A = Aphotic_Axial_Intensity (91, 1);",
-     "Aphotic_Axial_Intensity: found Half_Angle 91"},
-    {"UnknownLamp",
-     "Aphotic_Cone (0, z, 90, 1, \"sun\", 1)",
-     "Aphotic_Cone: found the lamp \"sun\"; allowed here: flash arc"},
-    {"LongLamp",
-     "Aphotic_Cone (0, z, 90, 1, \"" + std::string(61, 'x') + "\", 1)",
-     "Aphotic_Cone: allowed: a lamp's name of at most 60 characters; found xxx"},
-    {"ConeWithoutAxis",
-     "Aphotic_Cone (0, <0, 0, 0>, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: found an Axis of length 0"},
-    {"ConeTooWide",
-     "Aphotic_Cone (0, z, 90.1, 1, \"arc\", 1)",
-     "Aphotic_Cone: found Half_Angle 90.1"},
-    {"ConeTooNarrow", "Aphotic_Cone (0, z, 0, 1, \"arc\", 1)", "Aphotic_Cone: found Half_Angle 0"},
-    {"NegativeIntensity",
-     "Aphotic_Cone (0, z, 90, -1, \"arc\", 1)",
-     "Aphotic_Cone: found an intensity or Power below 0"},
-    {"NegativePower",
-     "Aphotic_Cone (0, z, 90, 1, \"arc\", -1)",
-     "Aphotic_Cone: found an intensity or Power below 0"},
-    {"StrobeInTheHousing",
-     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk7\")\n"
-     "Aphotic_Cone (<0.1, 0, 0>, z, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: is inside the camera's housing"},
-    {"BeamOfOneDimension",
-     "#declare Beam = array[2] {60, 1}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: Beam must be an array [n][2]"},
-    {"BeamOfFiveColumns",
-     "#declare Beam = array[1][5] {{60, 1, 2, 3, 4}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: Beam must be an array [n][2]"},
-    {"PatternOfNone",
-     "#declare Beam = array[1] {0}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: Beam must be an array [n][2]"},
-    {"EdgeWiderThanTheCone",
-     "#declare Beam = array[1][4] {{60, 1, 1, 61}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
-     "found an edge of 61.000000 degrees; allowed: 0 to the cone's half angle"},
-    {"PatternOverItsMost",
-     kLambert + "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.3), \"arc\", 1, 0)",
-     "Aphotic_Pattern: found an intensity of 0.318310 towards <0.000, 0.000, 1.000>; allowed: 0 to "
-     "Most, 0.300000"},
-    {"PatternUnderZero",
-     kLambert + "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, -1), \"arc\", 1, 0)",
-     "Aphotic_Pattern: found Most -1.000000; allowed: above 0"},
-    {"LampInAShell",
-     kLambert + kBeam +
-         "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.4), \"arc\", 1, 0)\n"
-         "Aphotic_Strobe (<0.002, 0, 0>, z, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: found a lamp 0.002000 units from another"},
-    {"ShellRoundALamp",
-     kLambert + kBeam + "Aphotic_Strobe (<0.002, 0, 0>, z, Beam, \"arc\", 1, 0)\n" +
-         "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.4), \"arc\", 1, 0)",
-     "Aphotic_Strobe: found a lamp 0.002000 units from another"},
-    {"UnknownBeam",
-     "#declare Aphotic_Beam_Names = array[1] {\"led\"}\n"
-     "Aphotic_Strobe (0, z, Aphotic_Beam (\"lad\"), \"arc\", 1, 0)",
-     "Aphotic_Beam: found \"lad\"; allowed here: led"},
-    {"NegativeExponent",
-     "#declare Beam = array[1][3] {{60, 1, -0.5}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: found an exponent of -0.5"},
-    {"StrobeWithoutAxis",
-     kBeam + "Aphotic_Strobe (0, <0, 0, 0>, Beam, \"arc\", 1, 0)",
-     "Aphotic_Strobe: found an Axis of length 0"},
-    {"EmitterOfHalfALamp",
-     kBeam + "Aphotic_Strobe (0, z, Beam, \"arc\", 1, <1, 1, 2.5, 1>)",
-     "Aphotic_Strobe: Emitter must be 0 or"},
-    {"CameraTwice", "Aphotic_Camera (1, 1) Aphotic_Camera (1, 1)", "Aphotic_Camera: called twice"},
-    {"CameraWithoutWidth",
-     "Aphotic_Camera (1, 0)",
-     "Aphotic_Camera: Focal_Length and Sensor_Width"},
-    {"PortWithoutCamera",
-     "Aphotic_Port (0.1, 0.1, \"bk7\")",
-     "Aphotic_Port: call Aphotic_Camera first"},
-    {"PortAfterStrobes",
-     "Aphotic_Camera (1, 1) Aphotic_Cone (0, z, 90, 1, \"arc\", 1)\n"
-     "Aphotic_Port (0.1, 0.1, \"bk7\")",
-     "Aphotic_Port: call it before the strobes"},
-    {"PortWithoutThickness",
-     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0, \"bk7\")",
-     "Aphotic_Port: Distance and Thickness must be above 0"},
-    {"UnknownGlass",
-     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk8\")",
-     "Aphotic_Port: found the glass \"bk8\"; allowed here: bk7"},
-    {"PortThatTheRigDoesNotHave",
-     "#undef Aphotic_Glass_Names\nAphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk7\")",
-     "Aphotic_Port: found a port in the scene; allowed: none"},
-    {"TiltedPortWithoutThickness",
-     "Aphotic_Camera (1, 1) Aphotic_Tilted_Port (0.1, 0, \"bk7\", z)",
-     "Aphotic_Tilted_Port: Distance and Thickness must be above 0"},
-    {"TiltedPortSeenEdgeOn",
-     "Aphotic_Camera (1, 1) Aphotic_Tilted_Port (0.1, 0.1, \"bk7\", x + 0.5 * z)",
-     "Aphotic_Tilted_Port: found rays 98.7 degrees off the normal; allowed: up to 85"},
-    {"DomeBehindThePupil",
-     "Aphotic_Camera (1, 1) Aphotic_Dome_Port (z, 1, 0.1, \"bk7\")",
-     "Aphotic_Dome_Port: Thickness must be above 0, and the pupil within Radius"},
-    {"FadeDistanceOfNothing",
-     "#declare Aphotic_Fade_Distance = 0;\nAphotic_Cone (0, z, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: found Aphotic_Fade_Distance 0.000000; allowed: above 0"},
-    {"PortTooThin",
-     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.0004, \"bk7\")",
-     "Aphotic_Port: found 0.100000 units from the pupil to the glass, and glass of 0.000400; "
-     "allowed: from 0.0005 units on"},
-    {"DomeTooNear",
-     "Aphotic_Camera (1, 1) Aphotic_Dome_Port (0.9997 * z, 1, 0.1, \"bk7\")",
-     "Aphotic_Dome_Port: found 0.000300 units from the pupil to the glass"},
-    {"PortWithoutANormal",
-     "Aphotic_Camera (1, 1) Aphotic_Tilted_Port (0.1, 0.1, \"bk7\", 0 * z)",
-     "Aphotic_Tilted_Port: found a Normal of length 0"},
-    {"PlaceOfNoDirection",
-     "#declare Aphotic_Sled = Aphotic_Place_Trans (0, 0, y)",
-     "Aphotic_Place_Trans: Look_At must differ from Location"},
-    {"SeafloorAboveTheSled",
-     "Aphotic_Seafloor (-1, 0, 0, \"light\")",
-     "Aphotic_Seafloor: found Altitude -1"},
-    {"SeafloorUpright",
-     "Aphotic_Seafloor (1, 90, 0, \"light\")",
-     "Aphotic_Seafloor: Pitch and Roll must be under 90"},
-};
-
-class AphoticIncMisuse : public testing::TestWithParam<Misuse> {};
+class AphoticIncMisuse : public testing::TestWithParam<Mistake> {};
 
 TEST_P(AphoticIncMisuse, IsNamed) {
     const TempFolder folder;
     const PovRayRun result = run_povray(
-        folder.path(), in_band(odd_band(), GetParam().sdl + "\ncamera { location 0 }\n"));
+        folder.path(),
+        in_band(odd_band(), GetParam().parts.front().text + "\ncamera { location 0 }\n"));
     EXPECT_EQ(result.end.exit_code, 1);
-    EXPECT_NE(result.said().find(GetParam().message), std::string::npos) << result.said();
+    EXPECT_TRUE(has(result.said(), GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(All,
                          AphoticIncMisuse,
-                         testing::ValuesIn(kMisuses),
-                         [](const auto& misuse) { return std::string(misuse.param.name); });
+                         testing::ValuesIn(misuses()),
+                         [](const auto& misuse) { return misuse.param.parts.front().key; });
 
 // What comes too late for any macro the end tells; so does a sled that comes after all of them, one
 // that skews, and a floor in another unit than the strobes.
@@ -754,7 +587,7 @@ TEST_F(AphoticInc, SettingsThatComeTooLateAreErrors) {
     };
     const auto expect = [&](const std::string& scene, const std::string& message) {
         const std::string words = said(scene);
-        EXPECT_NE(words.find(message), std::string::npos) << words;
+        EXPECT_TRUE(has(words, message));
     };
     expect(rig + "#declare Aphotic_Unit = 0.01;\nAphotic_End ()\n",
            "Aphotic_End: found Aphotic_Unit 0.010000, declared after macros that took it for "
@@ -799,14 +632,14 @@ TEST(AphoticIncErrors, AreAllProvoked) {
          at = text.find("#error", at + 1)) {
         ++errors;
     }
-    EXPECT_EQ(errors, kMisuses.size() - 7 + 1);
+    EXPECT_EQ(errors, misuses().size() - 7 + 1);
 }
 
 TEST_F(AphoticInc, RefusesAFrameOfAnotherVersion) {
     std::string sdl = in_band(odd_band(), "camera { location 0 }\n");
     const std::string version = fmt::format("Aphotic_Band_Version = {}", kBandVersion);
     sdl.replace(sdl.find(version), version.size(), "Aphotic_Band_Version = 99");
-    EXPECT_NE(run(sdl).said().find("the frame was written for 99"), std::string::npos);
+    EXPECT_TRUE(has(run(sdl).said(), "the frame was written for 99"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Pages in a real browser, as wide as on a desk and as narrow as on a phone: nothing on its
 // console, every picture shown, no label cut off, nothing wider than the page, and hostile names as
 // text.
+#include "base/atomic_file.h"
 #include "report/html.h"
 #include "support/browser.h"
 #include "support/corrected_survey.h"
@@ -111,26 +112,7 @@ std::string measuring(const std::string& page, int width_px) {
 <iframe width="{}" height="900" style="border:0" srcdoc="{}"></iframe>)",
                        width_px,
                        escaped(page)) +
-           R"(<script>
-addEventListener('load', () => {
-  const page = document.querySelector('iframe').contentDocument;
-  const images = [...page.images];
-  const shown = images.filter(i => i.complete && i.naturalWidth > 0 && i.clientWidth > 0);
-  const box = element => element.getBoundingClientRect();
-  const within = (inner, outer) => inner.left > outer.left - 1 && inner.right < outer.right + 1 &&
-                                   inner.top > outer.top - 1 && inner.bottom < outer.bottom + 1;
-  const cut = [...page.querySelectorAll('svg text')].filter(
-    text => !within(box(text), box(text.ownerSVGElement)));
-  const rings = [...page.querySelectorAll('.worst')].filter(
-    ring => within(box(ring), box(ring.closest('.map'))));
-  const ids = [...page.querySelectorAll('main [id]')].map(e => e.id);
-  const root = page.documentElement;
-  document.title = `images ${shown.length}/${images.length}, rings ${rings.length}` +
-    `, cut ${cut.length}` + cut.map(text => ' [' + text.textContent + ']').join('') +
-    `, ids twice ${ids.length - new Set(ids).size}` +
-    `, too wide ${root.scrollWidth - root.clientWidth}`;
-});
-</script></body></html>)";
+           read_text_file(APHOTIC_SOURCE_DIR "/tests/report/measuring.html");
 }
 
 class PageInABrowser : public testing::TestWithParam<Shown> {

@@ -8,6 +8,8 @@
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "support/effort.h"
+#include "support/has.h"
+#include "support/mistakes.h"
 #include "support/random_rig.h"
 #include "support/temp_folder.h"
 
@@ -28,52 +30,7 @@
 namespace aphotic::plausibility_test {
 namespace {
 
-constexpr std::string_view kUsualRig = R"(
-[sled]
-altitude_m = 2.0
-pitch_deg = 5.0
-[camera]
-resolution = [1360, 1024]
-pixel_pitch_um = 6.45
-focal_length_mm = 12.0
-range_nm = [420, 700]
-response = "nikon-d5100"
-[camera.port]
-shape = "flat"
-distance_mm = 40
-thickness_mm = 12
-glass = "bk7"
-[water]
-multiple = 1.0
-[seafloor]
-[beam.wide]
-fwhm_deg = 100
-[beam.cones]
-cones = [{ part = "a", half_angle_deg = 10, weight = 0.3 },
-         { part = "b", half_angle_deg = 90, weight = 0.7 }]
-[beam.lens]
-diffuser_mm = [60, 30]
-focal_length_mm = 65
-distance_mm = 50
-aperture_mm = 65
-[[strobe]]
-name = "fore"
-position_m = [0.5, 0, 0]
-aim = { tilt_deg = 20, toward = "axis" }
-beam = "wide"
-emitter_mm = [60, 30]
-luminous_flux_lm = 20000
-[[strobe]]
-name = "aft"
-position_m = [-0.5, 0, 0]
-aim = { tilt_deg = 26, toward = "axis" }
-beam = "cones"
-[[strobe]]
-name = "port"
-position_m = [0, -0.5, 0]
-direction = [0, 0.4, 1]
-beam = "lens"
-)";
+const std::string kUsualRig = read_text_file(APHOTIC_SOURCE_DIR "/tests/rig/mistakes/usual.toml");
 
 // Text in place of other text, wherever that stands.
 std::string with(std::string rig, std::string_view from, std::string_view to) {
@@ -94,105 +51,20 @@ std::string words_of(const std::vector<Doubt>& doubts) {
     return words;
 }
 
-struct Mistake {
-    std::string_view from;
-    std::string_view to;
-    std::string_view key;
-    std::string_view fix;  // what the doubt must say
-};
-
 TEST(Plausibility, EveryNumberInAnotherUnitIsDoubtedAndTheUnitTold) {
-    const std::vector<Mistake> mistakes{
-        {"altitude_m = 2.0", "altitude_m = 2000", "sled.altitude_m", "2 if that is in millimetres"},
-        {"altitude_m = 2.0", "altitude_m = 60", "sled.altitude_m", "18.29 if that is in feet"},
-        {"pitch_deg = 5.0",
-         "pitch_deg = 5.0\naltitude_offset_m = 350",
-         "sled.altitude_offset_m",
-         "0.35 if that is in millimetres"},
-        {"focal_length_mm = 12.0",
-         "focal_length_mm = 0.012",
-         "camera.focal_length_mm",
-         "49.2 degrees if focal_length_mm is in metres"},
-        {"focal_length_mm = 12.0",
-         "focal_length_mm = 0.4724",
-         "camera.focal_length_mm",
-         "49.2 degrees if focal_length_mm is in inches"},
-        {"focal_length_mm = 12.0",
-         "focal_length_mm = 12000",
-         "camera.focal_length_mm",
-         "49.2 degrees if focal_length_mm is in micrometres"},
-        {"pixel_pitch_um = 6.45",
-         "pixel_pitch_um = 6450",
-         "camera.pixel_pitch_um",
-         "49.2 degrees if pixel_pitch_um is in nanometres"},
-        {"pixel_pitch_um = 6.45\nfocal_length_mm = 12.0",
-         "fov_deg = 0.7",
-         "camera.fov_deg",
-         "40.11 if that is in radians"},
-        {"response =",
-         "position_m = [400, 0, 900]\nresponse =",
-         "camera.position_m",
-         "0.4 if that is in millimetres"},
-        {"response =",
-         "orientation_deg = [0, 0, 1.5708]\nresponse =",
-         "camera.orientation_deg",
-         "90 if that is in radians"},
-        {"response =",
-         "exposure_ms = 0.002\nresponse =",
-         "camera.exposure_ms",
-         "2 if that is in seconds"},
-        {"response =",
-         "black_level_dn = 4000\nwhite_level_dn = 4095\nresponse =",
-         "camera.black_level_dn",
-         "up to half of white_level_dn, 4095"},
-        {"thickness_mm = 12", "thickness_mm = 900", "camera.port.thickness_mm", "usual: 1 to 100"},
-        {"distance_mm = 40",
-         "distance_mm = 9000",
-         "camera.port.distance_mm",
-         "9 if that is in micrometres"},
-        {"multiple = 1.0", "multiple = 100", "water.multiple", "1 if that is in per cent"},
-        {"fwhm_deg = 100", "fwhm_deg = 1.745", "beam.wide.fwhm_deg", "99.98 if that is in radians"},
-        {"diffuser_mm = [60, 30]",
-         "diffuser_mm = [0.06, 0.03]",
-         "beam.lens.diffuser_mm",
-         "60 if that is in metres"},
-        {"half_angle_deg = 10, weight = 0.3 },\n         { part = \"b\", half_angle_deg = 90",
-         "half_angle_deg = 0.17, weight = 0.3 },\n         { part = \"b\", half_angle_deg = 1.57",
-         "beam.cones.cones",
-         "89.95 if that is in radians"},
-        {"weight = 0.3 },\n         { part = \"b\", half_angle_deg = 90, weight = 0.7",
-         "weight = 30 },\n         { part = \"b\", half_angle_deg = 90, weight = 70",
-         "beam.cones.cones",
-         "1 if they are in per cent"},
-        {"tilt_deg = 20, toward = \"axis\" }", "tilt_deg = 0.35, toward = \"axis\" }", "", ""},
-        {"position_m = [0.5, 0, 0]",
-         "position_m = [500, 0, 0]",
-         "strobe[0].position_m",
-         "0.5 if that is in millimetres"},
-        {"position_m = [-0.5, 0, 0]",
-         "position_m = [0, -50, 0]",
-         "strobe[1].position_m",
-         "-0.5 if that is in centimetres"},
-        {"emitter_mm = [60, 30]",
-         "emitter_mm = [0.06, 0.03]",
-         "strobe[0].emitter_mm",
-         "60 if that is in metres"},
-        {"luminous_flux_lm = 20000",
-         "luminous_flux_lm = 2",
-         "strobe[0].luminous_flux_lm",
-         "2000 if that is in kilolumens"},
-        {"luminous_flux_lm = 20000", "power = 0", "strobe[0].power", "gives no light"}};
-    for (const Mistake& mistake : mistakes) {
+    for (const Mistake& mistake : mistakes_in("rig/mistakes/units.txt", 25)) {
+        SCOPED_TRACE(testing::PrintToString(mistake));
+        const auto& parts = mistake.parts;
         const std::vector<Doubt> doubts =
-            doubts_of_text(with(std::string(kUsualRig), mistake.from, mistake.to), "");
-        const auto found = std::ranges::find(doubts, mistake.key, &Doubt::key);
-        if (mistake.key.empty()) {  // one strobe that points down by half a degree is one
+            doubts_of_text(with(kUsualRig, parts[0].text, parts[1].text), "");
+        if (mistake.message.empty()) {  // one strobe that points down by half a degree is one
             EXPECT_TRUE(doubts.empty()) << words_of(doubts);
             continue;
         }
-        ASSERT_NE(found, doubts.end()) << mistake.to << "\n" << words_of(doubts);
-        EXPECT_NE(found->what.find(mistake.fix), std::string::npos) << words_of(doubts);
-        EXPECT_GT(found->line, 0) << mistake.key;
+        const auto found = std::ranges::find(doubts, parts.at(2).text, &Doubt::key);
+        ASSERT_NE(found, doubts.end()) << words_of(doubts);
+        EXPECT_TRUE(has(found->what, mistake.message)) << words_of(doubts);
+        EXPECT_GT(found->line, 0);
     }
 }
 
@@ -200,7 +72,7 @@ TEST(Plausibility, EveryNumberInAnotherUnitIsDoubtedAndTheUnitTold) {
 TEST(Plausibility, WhatACalibrationCannotMeanIsDoubted) {
     const TempFolder folder;
     write_text_file(folder.path() / "camera.txt", "1 PINHOLE 1360 1024 1860 1860 0 0\n");
-    std::string text(kUsualRig);
+    std::string text = kUsualRig;
     const std::string told = "pixel_pitch_um = 6.45\nfocal_length_mm = 12.0\n";
     text.replace(
         text.find(told), told.size(), "pixel_pitch_um = 6.45\ncalibration = \"camera.txt\"\n");
@@ -208,19 +80,18 @@ TEST(Plausibility, WhatACalibrationCannotMeanIsDoubted) {
     const std::vector<Doubt> doubts = doubts_of(read_rig(folder.path() / "rig.toml"));
     const auto found = std::ranges::find(doubts, "camera.calibration", &Doubt::key);
     ASSERT_NE(found, doubts.end());
-    EXPECT_NE(found->what.find("found 0, 0 in an image of 1360 x 1024"), std::string::npos)
-        << found->what;
+    EXPECT_TRUE(has(found->what, "found 0, 0 in an image of 1360 x 1024"));
     EXPECT_GT(found->line, 0);
 }
 
 TEST(Plausibility, TiltsOfAllStrobesInRadiansAreDoubted) {
-    std::string rig = with(std::string(kUsualRig), "tilt_deg = 20", "tilt_deg = 0.35");
+    std::string rig = with(kUsualRig, "tilt_deg = 20", "tilt_deg = 0.35");
     rig = with(rig, "tilt_deg = 26", "tilt_deg = 0.45");
     const std::vector<Doubt> doubts = doubts_of_text(rig, "");
     ASSERT_EQ(doubts.size(), 1U) << words_of(doubts);
     EXPECT_EQ(doubts[0].key, "strobe[0].aim.tilt_deg");
-    EXPECT_NE(doubts[0].what.find("20.05 if that is in radians"), std::string::npos);
-    EXPECT_NE(doubts[0].what.find("1 more like it"), std::string::npos);
+    EXPECT_TRUE(has(doubts[0].what, "20.05 if that is in radians"));
+    EXPECT_TRUE(has(doubts[0].what, "1 more like it"));
 }
 
 // Of curves from a file: absorption per centimetre, and a beam's table over angles in radians.
@@ -229,46 +100,40 @@ TEST(Plausibility, TablesInOtherUnitsAreDoubted) {
     write_file(folder.path() / "a.csv",
                "wavelength_nm,absorption_per_m\n400,0.0001\n600,0.0023\n700,0.0065\n");
     write_file(folder.path() / "beam.csv", "theta_deg,intensity\n0,1\n0.7854,0.5\n1.5708,0\n");
-    const std::string absorption =
-        with(std::string(kUsualRig), "[water]", "[water]\nabsorption = \"a.csv\"");
+    const std::string absorption = with(kUsualRig, "[water]", "[water]\nabsorption = \"a.csv\"");
     const std::vector<Doubt> of_water = doubts_of_text(absorption, folder.path());
     ASSERT_EQ(of_water.size(), 1U) << words_of(of_water);
-    EXPECT_NE(of_water[0].what.find("0.23/m if the table is in 1/cm"), std::string::npos)
-        << words_of(of_water);
-    const std::string table =
-        with(std::string(kUsualRig), "fwhm_deg = 100", "table = \"beam.csv\"");
+    EXPECT_TRUE(has(of_water[0].what, "0.23/m if the table is in 1/cm")) << words_of(of_water);
+    const std::string table = with(kUsualRig, "fwhm_deg = 100", "table = \"beam.csv\"");
     const std::vector<Doubt> of_beam = doubts_of_text(table, folder.path());
     ASSERT_FALSE(of_beam.empty());
     EXPECT_EQ(of_beam[0].key, "beam.wide.table") << words_of(of_beam);
-    EXPECT_NE(of_beam[0].what.find("90 if that is in radians"), std::string::npos);
+    EXPECT_TRUE(has(of_beam[0].what, "90 if that is in radians"));
 }
 
 TEST(Plausibility, StrobesThatLightNothingInViewAreDoubted) {
     // The sled is pitched by 5 degrees: what points straight away from the floor in the sled's
     // frame is 85 degrees above the horizon.
-    const std::string up =
-        with(std::string(kUsualRig), "direction = [0, 0.4, 1]", "direction = [0, 0, -1]");
+    const std::string up = with(kUsualRig, "direction = [0, 0.4, 1]", "direction = [0, 0, -1]");
     const std::vector<Doubt> of_up = doubts_of_text(up, "");
     ASSERT_EQ(of_up.size(), 1U) << words_of(of_up);
     EXPECT_EQ(of_up[0].key, "strobe[2]");
-    EXPECT_NE(
-        of_up[0].what.find("'port' is aimed 85 degrees above the horizon, and lights nothing"),
-        std::string::npos)
+    EXPECT_TRUE(
+        has(of_up[0].what, "'port' is aimed 85 degrees above the horizon, and lights nothing"))
         << words_of(of_up);
     // A spot of 5 degrees, 70 degrees outward: the view's edge is some 80 degrees off.
-    std::string spot = with(std::string(kUsualRig), "fwhm_deg = 100", "fwhm_deg = 10");
+    std::string spot = with(kUsualRig, "fwhm_deg = 100", "fwhm_deg = 10");
     spot = with(spot, "aim = { tilt_deg = 20, toward = \"axis\" }", "direction = [2.7, 0, 1]");
     const std::vector<Doubt> of_spot = doubts_of_text(spot, "");
     ASSERT_EQ(of_spot.size(), 1U) << words_of(of_spot);
-    EXPECT_NE(of_spot[0].what.find("'fore' lights nothing that the camera sees"),
-              std::string::npos);
+    EXPECT_TRUE(has(of_spot[0].what, "'fore' lights nothing that the camera sees"));
     // All of them: the image is black.
     std::string black =
         with(up, "aim = { tilt_deg = 20, toward = \"axis\" }", "direction = [0,0,-1]");
     black = with(black, "aim = { tilt_deg = 26, toward = \"axis\" }", "direction = [0,0,-1]");
     const std::vector<Doubt> of_black = doubts_of_text(black, "");
     ASSERT_EQ(of_black.size(), 2U) << words_of(of_black);
-    EXPECT_NE(of_black[1].what.find("images are black"), std::string::npos);
+    EXPECT_TRUE(has(of_black[1].what, "images are black"));
 }
 
 // As set by a command, such as lightmap --altitude 2000.

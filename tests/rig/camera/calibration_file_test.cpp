@@ -10,7 +10,9 @@
 //   cv2.fisheye.projectPoints(D.reshape(-1,1,3), z, z, K, np.array([.02,-.01,.005,-.001]))
 #include "rig/camera/calibration_file.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "support/mistakes.h"
 #include "support/refusal.h"
 
 #include <fmt/format.h>
@@ -19,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -61,146 +64,22 @@ std::string with(std::string_view text, std::string_view from, std::string_view 
 
 // --- One camera in all formats --------------------------------------------------------------
 
-// As OpenCV 4.6 writes it.
-constexpr std::string_view kFileStorage =
-    "%YAML:1.0\n"
-    "---\n"
-    "image_width: 800\n"
-    "image_height: 600\n"
-    "camera_matrix: !!opencv-matrix\n"
-    "   rows: 3\n"
-    "   cols: 3\n"
-    "   dt: d\n"
-    "   data: [ 700., 0., 4.0525000000000000e+02, 0., 690.,\n"
-    "       2.9050000000000000e+02, 0., 0., 1. ]\n"
-    "distortion_coefficients: !!opencv-matrix\n"
-    "   rows: 1\n"
-    "   cols: 5\n"
-    "   dt: d\n"
-    "   data: [ -1.0000000000000001e-01, 2.0000000000000000e-02,\n"
-    "       1.0000000000000000e-03, -2.0000000000000000e-03, 0. ]\n"
-    "avg_reprojection_error: 2.1e-01\n";
+// As the tools write it; from the fuzzer's corpus.
+std::string seed(std::string_view name) {
+    return read_text_file(std::filesystem::path(APHOTIC_SOURCE_DIR) /
+                          "tests/fuzz/corpus/calibration" / name);
+}
 
-constexpr std::string_view kFileStorageXml =
-    "<?xml version=\"1.0\"?>\n"
-    "<opencv_storage>\n"
-    "<image_width>800</image_width>\n"
-    "<image_height>600</image_height>\n"
-    "<camera_matrix type_id=\"opencv-matrix\">\n"
-    "  <rows>3</rows>\n"
-    "  <cols>3</cols>\n"
-    "  <dt>d</dt>\n"
-    "  <data>\n"
-    "    700. 0. 405.25 0. 690. 290.5 0. 0. 1.</data></camera_matrix>\n"
-    "<distortion_coefficients type_id=\"opencv-matrix\">\n"
-    "  <rows>4</rows>\n"
-    "  <cols>1</cols>\n"
-    "  <dt>d</dt>\n"
-    "  <data>\n"
-    "    -0.1 0.02 0.001\n"
-    "    -0.002</data></distortion_coefficients>\n"
-    "</opencv_storage>\n";
-
-constexpr std::string_view kFileStorageJson =
-    "{\n"
-    "    \"image_width\": 800,\n"
-    "    \"image_height\": 600,\n"
-    "    \"camera_matrix\": {\n"
-    "        \"type_id\": \"opencv-matrix\",\n"
-    "        \"rows\": 3,\n"
-    "        \"cols\": 3,\n"
-    "        \"dt\": \"d\",\n"
-    "        \"data\": [ 700.0, 0.0, 405.25, 0.0, 690.0, 290.5, 0.0, 0.0, 1.0 ]\n"
-    "    },\n"
-    "    \"distortion_coefficients\": {\n"
-    "        \"type_id\": \"opencv-matrix\",\n"
-    "        \"rows\": 1,\n"
-    "        \"cols\": 4,\n"
-    "        \"dt\": \"d\",\n"
-    "        \"data\": [ -0.1, 0.02, 0.001, -0.002 ]\n"
-    "    }\n"
-    "}\n";
-
+const std::string kFileStorage = seed("filestorage.yaml");  // of OpenCV 4.6
+const std::string kFileStorageXml = seed("filestorage.xml");
+const std::string kFileStorageJson = seed("filestorage.json");
 // Before version 3: other names, and nothing between the version and the keys.
-constexpr std::string_view kOldFileStorage =
-    "%YAML:1.0\n"
-    "calibration_Time: \"Tue Nov 12 10:00:00 2013\"\n"
-    "image_Width: 800\n"
-    "image_Height: 600\n"
-    "Camera_Matrix: !!opencv-matrix\n"
-    "   rows: 3\n"
-    "   cols: 3\n"
-    "   dt: d\n"
-    "   data: [ 700., 0., 405.25, 0., 690., 290.5, 0., 0., 1. ]\n"
-    "Distortion_Coefficients: !!opencv-matrix\n"
-    "   rows: 5\n"
-    "   cols: 1\n"
-    "   dt: d\n"
-    "   data: [ -0.1, 0.02, 0.001, -0.002, 0. ]\n";
-
-constexpr std::string_view kCameraInfo =
-    "image_width: 800\n"
-    "image_height: 600\n"
-    "camera_name: narrow_stereo\n"
-    "camera_matrix:\n"
-    "  rows: 3\n"
-    "  cols: 3\n"
-    "  data: [700, 0, 405.25, 0, 690, 290.5, 0, 0, 1]\n"
-    "distortion_model: plumb_bob\n"
-    "distortion_coefficients:\n"
-    "  rows: 1\n"
-    "  cols: 5\n"
-    "  data: [-0.1, 0.02, 0.001, -0.002, 0]\n"
-    "rectification_matrix:\n"
-    "  rows: 3\n"
-    "  cols: 3\n"
-    "  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n";
-
-constexpr std::string_view kCamchain =
-    "cam0:\n"
-    "  cam_overlaps: []\n"
-    "  camera_model: pinhole\n"
-    "  distortion_coeffs: [-0.1, 0.02, 0.001, -0.002]\n"
-    "  distortion_model: radtan\n"
-    "  intrinsics: [700, 690, 405.25, 290.5]\n"
-    "  resolution: [800, 600]\n"
-    "  rostopic: /cam0/image_raw\n"
-    "  T_cam_imu:\n"
-    "  - [0, 1, 0, 0]\n"
-    "  - [-1, 0, 0, 0]\n";
-
-constexpr std::string_view kCamerasTxt =
-    "# Camera list with one line of data per camera:\n"
-    "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
-    "# Number of cameras: 1\n"
-    "1 OPENCV 800 600 700 690 405.75 291 -0.1 0.02 0.001 -0.002\n";
-
-constexpr std::string_view kCalibmar =
-    "model: OPENCV\n"
-    "# fx, fy, cx, cy, k1, k2, p1, p2\n"
-    "parameters: [700, 690, 405.75, 291, -0.1, 0.02, 0.001, -0.002]\n"
-    "non_svp_model: NONE\n"
-    "non_svp_parameters: []\n"
-    "width: 800\n"
-    "height: 600\n"
-    "# overall_rms: 0.2\n";
-
-constexpr std::string_view kMetashape =
-    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-    "<calibration>\n"
-    "  <projection>frame</projection>\n"
-    "  <width>800</width>\n"
-    "  <height>600</height>\n"
-    "  <f>690</f>\n"
-    "  <cx>5.75</cx>\n"
-    "  <cy>-9</cy>\n"
-    "  <b1>10</b1>\n"
-    "  <k1>-0.1</k1>\n"
-    "  <k2>0.02</k2>\n"
-    "  <p1>-0.002</p1>\n"
-    "  <p2>0.001</p2>\n"
-    "  <date>2026-05-26T08:27:27Z</date>\n"
-    "</calibration>\n";
+const std::string kOldFileStorage = seed("filestorage_before_3.yaml");
+const std::string kCameraInfo = seed("camera_info.yaml");
+const std::string kCamchain = seed("camchain.yaml");
+const std::string kCamerasTxt = seed("cameras.txt");
+const std::string kCalibmar = seed("calibmar.yaml");
+const std::string kMetashape = seed("metashape.xml");
 
 CameraCalibration one_camera() {
     CameraCalibration camera{.width_px = 800, .height_px = 600};
@@ -443,136 +322,30 @@ TEST(CalibrationFile, RefusesPortsThatNoRigMayHave) {
 
 // --- What is wrong --------------------------------------------------------------------------
 
-struct Fault {
+// By the rules at the head of the file.
+std::string with_mistake(const Mistake& mistake) {
     std::string text;
-    std::string message;
-};
-
-void expect_faults(const std::vector<Fault>& faults) {
-    for (const Fault& fault : faults) EXPECT_EQ(error_of(fault.text), fault.message) << fault.text;
+    std::string from;
+    for (const auto& [key, words] : mistake.parts) {
+        if (key == "of") text += seed(words);
+        if (key == "-") from = words;
+        if (key == "+") replace(text, from, words);
+        if (key == "behind") text += words + "\n";
+    }
+    return text;
 }
 
-TEST(CalibrationFile, TellsWhatIsWrongWithOpenCvs) {
-    expect_faults({
-        {with(kFileStorage, "image_width: 800\n", ""),
-         "cam:3: image_width: is missing; allowed: a number"},
-        {with(kFileStorage, "800", "0"),
-         "cam:3: image_width: found 0; allowed: a whole number from 1 to 16384"},
-        {with(kFileStorage, "800", "640.5"),
-         "cam:3: image_width: found 640.5; allowed: a whole number from 1 to 16384"},
-        {with(kFileStorage, "800", "wide"),
-         "cam:3: image_width: found 'wide'; allowed: a finite number"},
-        {with(kFileStorage, "700.,", ".nan,"),
-         "cam:9: camera_matrix.data: found '.nan'; allowed: a finite number"},
-        {with(kFileStorage, "700., 0.,", "700., 2.,"),
-         "cam:9: camera_matrix.data: found [700, 2, 405.25, 0, 690, 290.5, 0, 0, 1]; allowed: "
-         "[fx, 0, cx, 0, fy, cy, 0, 0, 1]"},
-        {with(kFileStorage, "0., 0., 1. ]", "0., 0., 2. ]"),
-         "cam:9: camera_matrix.data: found 2 as the last number; allowed: 1"},
-        {with(kFileStorage, "0., 0., 1. ]", "0., 1. ]"),
-         "cam:9: camera_matrix.data: found 8 numbers; allowed: 9"},
-        {with(kFileStorage, "700.,", "0.,"),
-         "cam: focal length in pixels: found 0; allowed: a number from 0.001 to 10000000000"},
-        {with(kFileStorage, "-2.0000000000000000e-03, 0. ]", "-2.0000000000000000e-03, 0., 0. ]"),
-         "cam:15: distortion_coefficients.data: found 6 numbers; allowed: 4, 5, 8, 12, 14"},
-        {with(kCameraInfo, "0.001, -0.002, 0]", "0.001, -0.002, 0, 0, 0, 0]"),
-         "cam:12: distortion_coefficients.data: found 8 numbers; allowed for plumb_bob: 4, 5"},
-        {with(kCameraInfo, "plumb_bob", "thin_prism"),
-         "cam:8: distortion_model: found 'thin_prism'; allowed: plumb_bob, rational_polynomial, "
-         "equidistant, fisheye"},
-        {with(with(kCameraInfo, "plumb_bob", "rational_polynomial"),
-              "-0.002, 0]",
-              "-0.002, 0, 0, 0, 0, 0, 0, 0, 0.1]"),
-         "cam:12: distortion_coefficients.data: found a thin prism or a tilted sensor; allowed: 0 "
-         "for the coefficients after the eighth"},
-        {with(kCameraInfo, "camera_name: narrow_stereo", "fisheye_model: 1"),
-         "cam:3: fisheye_model: found together with distortion_model; allowed: one of them"},
-        {with(kCameraInfo, "camera_name: narrow_stereo", "Image_Width: 640"),
-         "cam:3: image_width: duplicate key; allowed: once"},
-        {with(kCameraInfo, "distortion_coefficients:", "distortion:"),
-         "cam:1: distortion_coefficients: is missing; allowed: keys and values"},
-        {with(kFileStorageXml, "405.25", "1e400"),
-         "cam:9: camera_matrix.data: found '1e400'; allowed: a finite number"},
-    });
+class CalibrationMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(CalibrationMistake, IsNamedByLineKeyWhatWasFoundAndWhatIsAllowed) {
+    const std::string text = with_mistake(GetParam());
+    EXPECT_EQ(error_of(text), "cam:" + GetParam().message) << text;
 }
 
-TEST(CalibrationFile, TellsWhatIsWrongWithKalibrs) {
-    expect_faults({
-        {with(kCamchain, "pinhole", "omni"),
-         "cam:3: cam0.camera_model: found 'omni'; allowed: pinhole"},
-        {with(kCamchain, "radtan", "fov"),
-         "cam:5: cam0.distortion_model: found 'fov'; allowed: radtan, equidistant, none"},
-        {with(kCamchain, "[800, 600]", "[800, 600, 3]"),
-         "cam:7: cam0.resolution: found 3 numbers; allowed: 2"},
-        {with(kCamchain, "[800, 600]", "[800, -600]"),
-         "cam:7: cam0.resolution: found -600; allowed: a whole number from 1 to 16384"},
-        {with(kCamchain, "[700, 690, 405.25, 290.5]", "[700, [690], 405.25, 290.5]"),
-         "cam:6: cam0.intrinsics: found nested lists; allowed: numbers"},
-        {std::string(kCamchain) + "cam1:\n  camera_model: pinhole\n",
-         "cam:13: cam1: found together with cam0; allowed: one camera, that of the rig"},
-    });
-}
-
-TEST(CalibrationFile, TellsWhatIsWrongWithColmaps) {
-    const std::string names =
-        "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE, "
-        "SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE";
-    expect_faults({
-        {with(kCamerasTxt, "OPENCV", "THIN_PRISM_FISHEYE"),
-         "cam:4: model: found 'THIN_PRISM_FISHEYE'; allowed: " + names},
-        {with(kCalibmar, "OPENCV", "FOV"), "cam:1: model: found 'FOV'; allowed: " + names},
-        {with(kCamerasTxt, " -0.002", ""),
-         "cam:4: parameters: found 7 numbers; allowed for OPENCV: 8, which are fx, fy, cx, cy, "
-         "k1, k2, p1, p2"},
-        {with(kCalibmar, ", -0.002", ""),
-         "cam:3: parameters: found 7 numbers; allowed for OPENCV: 8, which are fx, fy, cx, cy, "
-         "k1, k2, p1, p2"},
-        {with(kCamerasTxt, "800 600", "800 -600"),
-         "cam:4: height: found -600; allowed: a whole number from 1 to 16384"},
-        {with(kCamerasTxt, "405.75", "inf"),
-         "cam:4: parameters: found 'inf'; allowed: a finite number"},
-        {std::string(kCamerasTxt) + "2 PINHOLE 800 600 700 690 405.75 291\n",
-         "cam:5: found a second camera; allowed: one, that of the rig"},
-        {"1 OPENCV\n", "cam:1: found 2 words; allowed: CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS"},
-        {with(kCamerasTxt, "700 690", "-700 690"),
-         "cam: focal length in pixels: found -700; allowed: a number from 0.001 to 10000000000"},
-    });
-}
-
-TEST(CalibrationFile, TellsWhatIsWrongWithMetashapes) {
-    expect_faults({
-        {with(kMetashape, "frame", "spherical"),
-         "cam:3: projection: found 'spherical'; allowed: frame, fisheye"},
-        {with(kMetashape, "<f>690</f>", ""), "cam:2: f: is missing; allowed: a number"},
-        {with(kMetashape, "<b1>10</b1>", "<p3>0.1</p3>"), "cam:9: p3: found 0.1; allowed: 0"},
-        {with(kMetashape, "<k1>-0.1</k1>", "<k1>-0.1<unit/></k1>"),
-         "cam:10: k1: found several values; allowed: a number"},
-        {with(kMetashape, "<k1>-0.1</k1>", "<k1>1e300</k1>"),
-         "cam: radial coefficient: found 1e+300; allowed: a number from -1000000000 to "
-         "1000000000"},
-        {"<document version=\"2.0.0\">\n</document>\n",
-         "cam:1: found the element 'document'; allowed: calibration (Metashape) or opencv_storage "
-         "(OpenCV)"},
-        {with(kMetashape, "</calibration>", ""), "cam:15: not valid XML: Start-end tags mismatch"},
-    });
-}
-
-TEST(CalibrationFile, RefusesWhatIsNoCalibration) {
-    const std::string no_keys =
-        "cam: found no keys; allowed: a camera calibration in YAML, JSON or XML, or COLMAP's "
-        "cameras.txt";
-    expect_faults({
-        {"", no_keys},
-        {"# nothing\n", no_keys},
-        {"[1, 2]\n", no_keys},
-        {"K: [700, 0, 400]\n",
-         "cam: found no camera; allowed: camera_matrix (OpenCV, ROS), cam0 (Kalibr), model and "
-         "parameters (calibmar), <calibration> (Metashape), or lines of COLMAP's cameras.txt"},
-        {std::string(kCameraInfo) + "---\n" + std::string(kCameraInfo),
-         "cam:17: found a second document; allowed: one"},
-        {"a: [1, 2\nb: 3\n", "cam:2: not valid YAML: end of sequence flow not found"},
-    });
-}
+INSTANTIATE_TEST_SUITE_P(InLine,
+                         CalibrationMistake,
+                         testing::ValuesIn(mistakes_in("rig/camera/mistakes/calibrations.txt", 45)),
+                         [](const auto& mistake) { return std::to_string(mistake.param.line); });
 
 // COLMAP's own writer packs a camera as <Q, <I i Q Q, <d d d d.
 TEST(CalibrationFile, ColmapsBinaryIsRefusedByNameAndTheWayOutTold) {
@@ -640,8 +413,7 @@ TEST(CalibrationFile, RefusesAliasesOfAliases) {
 
 // Of which yaml-cpp makes documents without end.
 TEST(CalibrationFile, RefusesACommaAfterTheLastBracket) {
-    EXPECT_EQ(error_of(std::string(kFileStorageJson) + ","),
-              "cam:19: found a second document; allowed: one");
+    EXPECT_EQ(error_of(kFileStorageJson + ","), "cam:19: found a second document; allowed: one");
 }
 
 }  // namespace

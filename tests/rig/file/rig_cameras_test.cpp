@@ -11,6 +11,7 @@
 #include "support/dice.h"
 #include "support/has.h"
 #include "support/refusal.h"
+#include "support/scene_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,67 +29,8 @@ constexpr double kRounding = 1e-12;
 
 // A stereo pair; the second camera has a port of its own, and the place and angles of `second`.
 std::string two_cameras(const std::string& second) {
-    return R"(title = "stereo"
-[sled]
-altitude_m = 2.0
-pitch_deg = 4.0
-roll_deg = -3.0
-
-[[camera]]  # the first
-name = "port"
-resolution = [40, 30]
-pixel_pitch_um = 200.0
-focal_length_mm = 12.0
-response = "nikon-d5100"
-range_nm = [400, 700]
-position_m = [0.1, -0.2, 0.05]
-orientation_deg = [2, 1, 0]
-
-[[camera]]
-name = "starboard"
-resolution = [60, 50]
-pixel_pitch_um = 100.0
-focal_length_mm = 8.0
-response = "nikon-d5100"
-range_nm = [400, 700]
-)" + second +
-           R"(
-[camera.port]
-shape = "flat"
-distance_mm = 20.0
-thickness_mm = 10.0
-glass = "bk7"
-
-[water]
-absorption = "pope-fry-1997"
-
-[seafloor]
-reflectance = "sand"
-
-[beam.round]
-fwhm_deg = 70.0
-
-[beam.oval]
-diffuser_mm = [40.0, 90.0]
-focal_length_mm = 80.0
-distance_mm = 60.0
-aperture_mm = 80.0
-turn_deg = 20.0
-
-[[strobe]]
-name = "fore"
-position_m = [0.5, 0.1, 0.02]
-aim = { tilt_deg = 20.0, toward = "axis" }
-beam = "oval"
-spectrum = "xenon-flash"
-
-[[strobe]]
-name = "aft"
-position_m = [-0.5, 0.0, 0.0]
-direction = [0.3, 0.1, 1.0]
-beam = "round"
-spectrum = "xenon-flash"
-)";
+    return replaced(
+        read_text_file(APHOTIC_SOURCE_DIR "/tests/rig/file/stereo.toml"), "# SECOND", second);
 }
 
 Rig seen_by(const std::string& camera, const std::string& second) {

@@ -8,6 +8,7 @@
 #include "rig/camera/vignetting.h"
 #include "rig/geometry_signature.h"
 #include "support/has.h"
+#include "support/mistakes.h"
 #include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
@@ -290,57 +291,26 @@ fs::path mistakes_folder() {
 }
 
 // By the rules at the head of the file.
-struct Mistake {
-    int line = 0;  // of the file
-    std::map<std::size_t, std::string> instead;
-    std::string message;
-};
-
-std::vector<Mistake> all_mistakes() {
-    std::ifstream file(mistakes_folder() / "rigs.txt");
-    std::vector<Mistake> mistakes;
-    Mistake next;
-    std::string* last = nullptr;
-    int line = 0;
-    for (std::string text; std::getline(file, text);) {
-        ++line;
-        if (text.empty() || text.front() == '#') continue;
-        const std::size_t space = text.find(' ');
-        const std::string rest = space == std::string::npos ? "" : text.substr(space + 1);
-        if (text.front() == '=') {
-            next.line = line;
-            next.message = "rig.toml:" + rest;
-            mistakes.push_back(std::exchange(next, {}));
-        } else if (text.front() == '|') {
-            *last += "\n" + rest;
-        } else {
-            last = &(next.instead[std::stoul(text)] = rest);
-        }
-    }
-    return mistakes;
-}
-
 std::string with_mistake(const Mistake& mistake) {
+    const auto instead = [&](std::size_t line) -> const std::string* {
+        const auto at = std::ranges::find(mistake.parts, std::to_string(line), &Mistake::Part::key);
+        return at == mistake.parts.end() ? nullptr : &at->text;
+    };
     std::string rig;
     std::istringstream lines{std::string(kMinimal)};
     std::string line;
-    for (std::size_t n = 0; n == 0 || std::getline(lines, line); ++n) {
-        const auto instead = mistake.instead.find(n);
-        if (instead != mistake.instead.end()) line = instead->second;
-        if (n > 0 || instead != mistake.instead.end()) rig += line + "\n";
+    for (std::size_t n = 0; n == 0 || n == 18 || std::getline(lines, line); ++n) {
+        const std::string* other = instead(n);
+        if (other != nullptr) line = *other;
+        if ((n > 0 && n < 18) || other != nullptr) rig += line + "\n";
     }
-    const auto behind = mistake.instead.find(18);
-    return behind == mistake.instead.end() ? rig : rig + behind->second + "\n";
-}
-
-void PrintTo(const Mistake& mistake, std::ostream* out) {
-    *out << "tests/rig/file/mistakes/rigs.txt:" << mistake.line;
+    return rig;
 }
 
 class RigMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(RigMistake, IsNamedByLineKeyWhatWasFoundAndWhatIsAllowed) {
-    std::string wanted = GetParam().message;
+    std::string wanted = "rig.toml:" + GetParam().message;
     const std::string name = "FOLDER";
     if (const std::size_t at = wanted.find(name); at != std::string::npos) {
         wanted.replace(at, name.size(), mistakes_folder().string());
@@ -356,7 +326,7 @@ TEST_P(RigMistake, IsNamedByLineKeyWhatWasFoundAndWhatIsAllowed) {
 
 INSTANTIATE_TEST_SUITE_P(InLine,
                          RigMistake,
-                         testing::ValuesIn(all_mistakes()),
+                         testing::ValuesIn(mistakes_in("rig/file/mistakes/rigs.txt", 205)),
                          [](const auto& mistake) { return std::to_string(mistake.param.line); });
 
 TEST(RigReader, TakesNumbersAtTheirLimits) {
@@ -382,7 +352,7 @@ TEST(RigReader, RangeThatSeveralTablesDoNotCoverNamesThemAll) {
                              "lamp spectrum 'xenon-flash' covers 380 to 780 nm",
                              "sensor response 'nikon-d5100' (red) covers 380 to 780 nm",
                              "range_nm = [380, 727.5] works"}) {
-        EXPECT_NE(both.find(part), std::string::npos) << part << "\nin " << both;
+        EXPECT_TRUE(has(both, part)) << part << "\nin " << both;
     }
 }
 
@@ -609,12 +579,8 @@ TEST(RigReader, RefusesTablesWithinTablesWithoutEnd) {
 TEST(RigReader, AnUnreadableRigIsNamed) {
     const TempFolder folder;
     const fs::path missing = folder.path() / "rig.toml";
-    try {
-        static_cast<void>(read_rig(missing));
-        FAIL() << "nothing was said";
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.what(), missing.string() + ": cannot be read: No such file or directory");
-    }
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(read_rig(missing)); }),
+              missing.string() + ": cannot be read: No such file or directory");
     EXPECT_THROW(static_cast<void>(read_rig(folder.path())), InputError);
 }
 
@@ -860,9 +826,7 @@ TEST(RigReader, RefusesControlCharactersInEveryText) {
         for (const auto& [rig, place] : rigs) {
             const std::string message = error_of(rig);
             EXPECT_TRUE(message.starts_with(place)) << message;
-            EXPECT_NE(message.find("allowed: a string without control characters"),
-                      std::string::npos)
-                << message;
+            EXPECT_TRUE(has(message, "allowed: a string without control characters"));
             EXPECT_FALSE(has_control_characters(message)) << message;
         }
     }
