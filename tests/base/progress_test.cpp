@@ -87,9 +87,7 @@ TEST(Progress, IsRepeatedWhileNothingIsReported) {
         line.show("planning", 0.0);
         std::this_thread::sleep_for(kLong);
     });
-    EXPECT_NE(printed.find("aphotic: planning: 0 s so far\naphotic: planning: 0 s so far\n"),
-              std::string::npos)
-        << printed;
+    EXPECT_TRUE(has(printed, "aphotic: planning: 0 s so far\naphotic: planning: 0 s so far\n"));
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 #include "base/sha256.h"
 
 #include "base/error.h"
-#include "tests/support/temp_folder.h"
+#include "support/refusal.h"
+#include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -40,11 +41,8 @@ TEST(Sha256, OfAFileIsThatOfItsBytes) {
 TEST(Sha256, OfAnUnreadableFileIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const auto missing = folder.path() / "missing";
-    try {
-        FAIL() << sha256_of_file(missing);
-    } catch (const RunError& error) {
-        EXPECT_EQ(error.what(), missing.string() + ": cannot be read");
-    }
+    EXPECT_EQ(run_error_of([&] { static_cast<void>(sha256_of_file(missing)); }),
+              missing.string() + ": cannot be read");
     EXPECT_THROW(static_cast<void>(sha256_of_file(folder.path())), RunError);
 }
 

@@ -3,6 +3,7 @@
 // Beams of every kind through real POV-Ray, against the closed form of the physics at every pixel:
 // two strobes without any symmetry over a tilted floor.
 #include "base/error.h"
+#include "support/refusal.h"
 #include "support/rendered.h"
 
 namespace aphotic::beams_test {
@@ -211,14 +212,9 @@ TEST(Beams, ShellsShadowNoPixel) {
 TEST(Beams, LampsInOnePlaceAreRefused) {
     Rig rig = lit_by(all_about());
     rig.strobes[1].position_m = rig.strobes[0].position_m;
-    try {
-        static_cast<void>(scenes_of(rig, kWavelengthsNm));
-        FAIL() << "no refusal";
-    } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  "strobes 'fore' and 'aft' have lamps in one place, and the beam 'made' is not a "
-                  "sum of cones in water; allowed: lamps at least a micrometre apart");
-    }
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(scenes_of(rig, kWavelengthsNm)); }),
+              "strobes 'fore' and 'aft' have lamps in one place, and the beam 'made' is not a "
+              "sum of cones in water; allowed: lamps at least a micrometre apart");
 }
 
 }  // namespace

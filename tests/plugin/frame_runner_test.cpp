@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "support/refusal.h"
 #include "support/rendered.h"
 #include "support/run_command.h"
 #include "support/variable.h"
@@ -20,12 +21,8 @@ class FrameRunner : public testing::Test {
     std::string failure_of(const std::string& script_body) {
         const PovRay povray{.executable = write_script(folder_.path() / "povray.sh", script_body),
                             .version = "3.7.0.10"};
-        try {
-            render(povray, folder_.path(), set_, {.jobs = 2, .report = {}});
-        } catch (const RunError& error) {
-            return error.what();
-        }
-        return "no error";
+        return run_error_of(
+            [&] { render(povray, folder_.path(), set_, {.jobs = 2, .report = {}}); });
     }
 
     [[nodiscard]] bool has_frames() const {

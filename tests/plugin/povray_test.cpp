@@ -2,6 +2,7 @@
 #include "plugin/povray.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
@@ -23,15 +24,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(text.find(from), from.size(), to);
 }
 
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
 TEST(PovRay, VersionIsReadFromWhatItPrints) {
     EXPECT_EQ(povray_from(kPrinted).version, "3.7.0.10.unofficial");
     EXPECT_EQ(povray_from(replaced(kPrinted, "3.7.0.10.unofficial", "3.8.0-beta.2")).version,
@@ -40,7 +32,7 @@ TEST(PovRay, VersionIsReadFromWhatItPrints) {
 
 TEST(PovRay, OldVersionIsRefused) {
     const std::string old = replaced(kPrinted, "3.7.0.10", "3.6.1");
-    EXPECT_EQ(message_of([&] { (void)povray_from(old); }),
+    EXPECT_EQ(run_error_of([&] { (void)povray_from(old); }),
               "found version 3.6; allowed: 3.7 or later");
 }
 
@@ -52,12 +44,12 @@ TEST(PovRay, BuildWithoutOpenExrIsToldAndRefusedWhereItMatters) {
     without = replaced(without, "formats: -", "formats: openexr");
     PovRay povray = povray_from(without);
     povray.executable = "/opt/povray";
-    EXPECT_EQ(message_of([&] { require_openexr(povray, "which frames need"); }),
+    EXPECT_EQ(run_error_of([&] { require_openexr(povray, "which frames need"); }),
               "POV-Ray: /opt/povray: it was built without OpenEXR, which frames need");
 }
 
 TEST(PovRay, OtherProgramIsRefused) {
-    const std::string message = message_of([] { (void)find_povray("/bin/true"); });
+    const std::string message = run_error_of([] { (void)find_povray("/bin/true"); });
     EXPECT_NE(message.find("/bin/true"), std::string::npos) << message;
     EXPECT_NE(message.find("does not identify itself"), std::string::npos) << message;
 }
@@ -75,7 +67,7 @@ TEST(PovRay, LiesAboutTheVersionAreRefused) {
                                        std::string("3"),
                                        std::string("3."),
                                        std::string("")}) {
-        EXPECT_EQ(message_of([&] {
+        EXPECT_EQ(run_error_of([&] {
                       (void)povray_from(replaced(kPrinted, "3.7.0.10.unofficial", version));
                   }),
                   "it does not identify itself as POV-Ray")
@@ -83,7 +75,7 @@ TEST(PovRay, LiesAboutTheVersionAreRefused) {
     }
     EXPECT_FALSE(
         povray_from(replaced(kPrinted, " openexr", std::string(3'000'000, ' '))).has_openexr);
-    EXPECT_EQ(message_of([&] { (void)povray_from(std::string(3'000'000, 'x') + kPrinted); }),
+    EXPECT_EQ(run_error_of([&] { (void)povray_from(std::string(3'000'000, 'x') + kPrinted); }),
               "it does not identify itself as POV-Ray");
 }
 
@@ -114,11 +106,11 @@ TEST(PovRay, OptionComesBeforeVariableAndVariableBeforePath) {
 }
 
 TEST(PovRay, MissingOneSaysWhereItWasLookedFor) {
-    EXPECT_NE(message_of([] { (void)find_povray("/no/such/povray"); }).find("/no/such/povray"),
+    EXPECT_NE(run_error_of([] { (void)find_povray("/no/such/povray"); }).find("/no/such/povray"),
               std::string::npos);
     const Variable path("PATH", "/nowhere");
     const Variable variable("APHOTIC_POVRAY", "");
-    const std::string message = message_of([] { (void)find_povray(""); });
+    const std::string message = run_error_of([] { (void)find_povray(""); });
     EXPECT_NE(message.find("PATH"), std::string::npos) << message;
     EXPECT_NE(message.find("install povray"), std::string::npos) << message;
 }

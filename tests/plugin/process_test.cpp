@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -73,15 +74,6 @@ bool is_gone(pid_t pid) {
     if (!runs(pid)) return true;
     const fs::path stat = "/proc/" + std::to_string(pid) + "/stat";
     return !fs::exists(stat) || read_text_file(stat).find(") Z ") != std::string::npos;
-}
-
-std::string run_error(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return "no error";
 }
 
 TEST(Process, TellsTheExitStatus) {
@@ -174,10 +166,10 @@ TEST(Process, IsPolledWithoutWaiting) {
 TEST(Process, ThatIsMissingIsARunErrorThatNamesIt) {
     Script script("");
     script.request().executable = script.file("none");
-    EXPECT_EQ(run_error([&] { script.run(); }),
+    EXPECT_EQ(run_error_of([&] { script.run(); }),
               script.file("none").string() + ": cannot be started: No such file or directory");
     write_file(script.file("none"), "no program");
-    EXPECT_EQ(run_error([&] { script.run(); }),
+    EXPECT_EQ(run_error_of([&] { script.run(); }),
               script.file("none").string() + ": cannot be started: Permission denied");
 }
 
@@ -185,11 +177,11 @@ TEST(Process, WithoutItsFolderOrLogIsARunErrorThatNamesIt) {
     Script elsewhere("true");
     elsewhere.request().folder = elsewhere.file("missing");
     EXPECT_EQ(
-        run_error([&] { elsewhere.run(); }),
+        run_error_of([&] { elsewhere.run(); }),
         "/bin/sh: cannot be started: " + elsewhere.file("missing").string() + " is not a folder");
     Script unheard("touch ran");
     unheard.request().log = unheard.file("missing") / "log.txt";
-    EXPECT_EQ(run_error([&] { unheard.run(); }),
+    EXPECT_EQ(run_error_of([&] { unheard.run(); }),
               unheard.request().log.string() + ": cannot be written: No such file or directory");
     EXPECT_FALSE(fs::exists(unheard.file("ran"))) << "it was started all the same";
 }
@@ -198,7 +190,7 @@ TEST(Process, IsKilledWhenItsTimeIsUp) {
     Script script("echo $$ > pid; exec sleep 60");
     constexpr double kTimeoutS = 0.5;
     const auto before = Clock::now();
-    EXPECT_EQ(run_error([&] { static_cast<void>(run_process(script.request(), kTimeoutS)); }),
+    EXPECT_EQ(run_error_of([&] { static_cast<void>(run_process(script.request(), kTimeoutS)); }),
               "/bin/sh: did not answer within 0.5 s");
     EXPECT_LT(Clock::now() - before, kPatience);
     const pid_t pid = pid_in(script.file("pid"));
@@ -273,7 +265,7 @@ std::string why_stopped(Script& script) {
     const pid_t pid = pid_in(script.file("pid"));
     EXPECT_GT(pid, 0);
     const std::string why =
-        run_error([&] { comes_true([&] { return process.poll().has_value(); }); });
+        run_error_of([&] { comes_true([&] { return process.poll().has_value(); }); });
     EXPECT_TRUE(pid > 0 && is_gone(pid));
     return why;
 }
@@ -317,7 +309,7 @@ TEST(Process, ThatComputesIsLeftAlone) {
 
 TEST(Process, ThatPrintsWithoutEndIsStopped) {
     Script script("echo $$ > pid; exec yes");
-    EXPECT_EQ(run_error([&] { script.run(); }),
+    EXPECT_EQ(run_error_of([&] { script.run(); }),
               "/bin/sh was stopped: it printed more than 64 MiB\nIts log: " +
                   script.request().log.string());
     EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "rig/file/rig_reader.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -25,12 +26,7 @@ Camera camera() {
 }
 
 std::string fault_in(std::string_view csv) {
-    try {
-        static_cast<void>(parse_vignetting_csv("v.csv", csv));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
+    return refusal_of([&] { static_cast<void>(parse_vignetting_csv("v.csv", csv)); });
 }
 
 TEST(Vignetting, IsTheFourthPowerOfTheCosine) {

@@ -135,16 +135,13 @@ TEST_F(WaterReader, RefusesALampAtThePupilWhereItScatters) {
         "fwhm_deg = 90\n[[strobe]]\nname = \"fore\"\nposition_m = [0, 0, 0]\n"
         "direction = [0, 0, 1]\nbeam = \"wide\"\n[water]\n";
     EXPECT_NO_THROW(static_cast<void>(parse_rig(at_the_pupil, "rig.toml", folder_.path())));
-    try {
-        static_cast<void>(
-            parse_rig(at_the_pupil + "type = \"jerlov-II\"\n", "rig.toml", folder_.path()));
-        ADD_FAILURE() << "it was taken";
-    } catch (const InputError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "rig.toml:13: strobe[0].position_m: found [0, 0, 0]; allowed: in water that scatters, "
-            "a point at least 0.001 m from the camera's pupil, since the veil is infinite there");
-    }
+    EXPECT_EQ(
+        refusal_of([&] {
+            static_cast<void>(
+                parse_rig(at_the_pupil + "type = \"jerlov-II\"\n", "rig.toml", folder_.path()));
+        }),
+        "rig.toml:13: strobe[0].position_m: found [0, 0, 0]; allowed: in water that scatters, "
+        "a point at least 0.001 m from the camera's pupil, since the veil is infinite there");
 }
 
 TEST_F(WaterReader, RefusesDaylightsAttenuation) {

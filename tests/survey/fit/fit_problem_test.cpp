@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "support/fit_rig.h"
 #include "support/has.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -72,12 +73,7 @@ TEST(FitProblem, HoldIsTheOppositeOfFree) {
 
 TEST(FitProblem, RefusesWhatNoNumberIsCalled) {
     const auto refusal = [](const FitOptions& options) -> std::string {
-        try {
-            static_cast<void>(problem_of(options));
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "accepted";
+        return refusal_of([&] { static_cast<void>(problem_of(options)); });
     };
     FitOptions hold;
     hold.hold = {"aims"};

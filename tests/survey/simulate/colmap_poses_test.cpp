@@ -5,6 +5,7 @@
 #include "survey/simulate/colmap_poses.h"
 
 #include "support/colmap_text.h"
+#include "support/has.h"
 #include "support/refusal.h"
 #include "support/rendered.h"
 #include "validation/tracer.h"
@@ -86,9 +87,7 @@ TEST(ColmapPoses, ProjectTheFloorToItsPixels) {
 
 // The header's limit: level, a half turn about x, the altitude over the world's origin.
 TEST(ColmapPoses, OfALevelSledAreAHalfTurn) {
-    EXPECT_NE(colmap_images(kLegs, ".tif").find("\n1 0 1 0 0 0 0 2 1 000001.tif\n\n2 "),
-              std::string::npos)
-        << colmap_images(kLegs, ".tif");
+    EXPECT_TRUE(has(colmap_images(kLegs, ".tif"), "\n1 0 1 0 0 0 0 2 1 000001.tif\n\n2 "));
 }
 
 TEST(ColmapPoses, RefuseWhatColmapCannotSay) {
@@ -121,8 +120,8 @@ TEST(ColmapPoses, SayThatAPortRefracts) {
     const std::string open = colmap_cameras(camera);
     camera.port =
         PortWindow{.distance_m = 0.02, .thickness_m = 0.01, .glass = builtin_glass("bk7")};
-    EXPECT_EQ(open.find("port"), std::string::npos);
-    EXPECT_NE(colmap_cameras(camera).find("# The lens in air"), std::string::npos);
+    EXPECT_FALSE(has(open, "port"));
+    EXPECT_TRUE(has(colmap_cameras(camera), "# The lens in air"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "lightmap/lightmap.h"
 #include "rig/file/rig_reader.h"
 #include "support/has.h"
+#include "support/refusal.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"
 
@@ -165,14 +166,9 @@ TEST_F(Simulated, IsOneSurveyInItsFolder) {
     SimulatedSurvey made = survey("out", 1);
     make(made);
     const auto refused = [](const SimulatedSurvey& other) {
-        try {
-            begin_survey(other);
-            return std::string();
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
+        return refusal_of([&] { begin_survey(other); });
     };
-    EXPECT_EQ(refused(made), "");
+    EXPECT_EQ(refused(made), kAccepted);
     SimulatedSurvey other = made;
     other.seed = 2;
     EXPECT_TRUE(has(refused(other), "another folder"));
@@ -181,7 +177,7 @@ TEST_F(Simulated, IsOneSurveyInItsFolder) {
     EXPECT_TRUE(has(refused(other), "survey.json: found a survey of another rig; allowed: "));
     other = made;
     other.camera.read_noise_e = 9.0;
-    EXPECT_NE(refused(other), "");
+    EXPECT_NE(refused(other), kAccepted);
     other = made;
     other.legs.push_back(made.legs.front());
     other.folder = temp_.path() / "twice";
