@@ -7,10 +7,10 @@
 #include "light/floor_image.h"
 #include "lightmap/cone_edge.h"
 #include "lightmap/lightmap.h"
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "support/cones_seen.h"
 #include "support/effort.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -33,10 +33,7 @@ constexpr double kError = 2.0 * (4e-6 + 12.0 * 0x1p-24) + kTileError;
 
 // One K and, behind a port, all but one index.
 Rig plain_rig(int width_px, int height_px) {
-    Rig rig = read_rig(APHOTIC_SOURCE_DIR "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
+    Rig rig = habcam(width_px, height_px);
     rig.camera.range = {549.995, 550.005};
     rig.water.multiple = 0.0;
     rig.water.uniform_loss_per_m = kLoss_per_m;

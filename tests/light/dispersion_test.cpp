@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/dispersion.h"
 
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,8 @@ namespace {
 // towards the corner cover ever less.
 constexpr double kWhosePixels = 0.015;
 
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
 TEST(CornerShift, IsZeroWithoutAPort) {
-    const Rig rig = rig_of("habcam.toml");
+    const Rig rig = scene_rig("habcam.toml");
     EXPECT_EQ(corner_shift_px(rig, 400.0, 720.0), 0.0);
     EXPECT_EQ(corner_shift_px(rig, 650.0, 450.0), 0.0);
 }
@@ -32,7 +28,7 @@ TEST(CornerShift, IsZeroWithoutAPort) {
 // m.
 TEST(CornerShift, HasTheFigureOfTheManual) {
     constexpr double kTwoDigits = 0.05;
-    EXPECT_NEAR(corner_shift_px(rig_of("port.toml"), 450.0, 650.0), 6.1, kTwoDigits);
+    EXPECT_NEAR(corner_shift_px(scene_rig("port.toml"), 450.0, 650.0), 6.1, kTwoDigits);
 }
 
 // Column at which the ray of a wavelength meets the plane at the altitude this far from the axis,
@@ -58,7 +54,7 @@ double radius_px(const Rig& rig, double from_axis_m, double lambda_nm) {
 
 // What the formula stands for: how many pixels apart a floor point appears in the two.
 TEST(CornerShift, IsHowFarApartAPointAppears) {
-    const Rig rig = rig_of("port.toml");
+    const Rig rig = scene_rig("port.toml");
     for (const double blue_nm : {400.0, 450.0, 520.0}) {
         for (const double red_nm : {560.0, 650.0, 720.0}) {
             const WaterRay corner = pixel_ray(rig, 0.0, 0.0, red_nm);
@@ -77,7 +73,7 @@ TEST(CornerShift, IsHowFarApartAPointAppears) {
 // Light that is a parabola in the index is that at all wavelengths.
 TEST(IndexNodes, AreExactForAParabola) {
     constexpr double kRounding = 1e-9;
-    const Rig rig = rig_of("port.toml");
+    const Rig rig = scene_rig("port.toml");
     const std::vector<double> nodes_nm = index_nodes_nm(rig);
     ASSERT_EQ(nodes_nm.size(), kIndexNodes);
     const auto light = [&](double nm) {
@@ -93,7 +89,7 @@ TEST(IndexNodes, AreExactForAParabola) {
 }
 
 TEST(IndexNodes, WithoutAPortOneIsEnough) {
-    const Rig rig = rig_of("habcam.toml");
+    const Rig rig = scene_rig("habcam.toml");
     EXPECT_FALSE(disperses(rig));
     const std::vector<double> nodes_nm = index_nodes_nm(rig);
     ASSERT_EQ(nodes_nm.size(), 1U);

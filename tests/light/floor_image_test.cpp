@@ -3,9 +3,9 @@
 // Images by tiles against the same light pixel by pixel.
 #include "light/floor_image.h"
 
-#include "rig/file/rig_reader.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -63,14 +63,6 @@ void expect_light_of_each_pixel(const Rig& rig, const std::string& what) {
         }
     }
     EXPECT_LE(worst, kTileError + kRounding) << what;
-}
-
-Rig habcam(int width_px, int height_px) {
-    Rig rig = read_rig(APHOTIC_SOURCE_DIR "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    return rig;
 }
 
 TEST(FloorImage, IsTheLightOfEachPixel) {

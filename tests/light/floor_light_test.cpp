@@ -8,10 +8,10 @@
 #include "base/error.h"
 #include "light/path_range.h"
 #include "lightmap/lightmap.h"
-#include "rig/file/rig_reader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"
+#include "support/scene_rig.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -29,14 +29,6 @@
 
 namespace aphotic::floor_light_test {
 namespace {
-
-Rig small_rig(int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    return rig;
-}
 
 // Three lines of 2 nm: in light of one wavelength no neighbour evens out what a kink does.
 Sensor line_sensor() {
@@ -125,7 +117,7 @@ Worst worst_off_edges(const Rig& rig) {
 // Sleds with one to four strobes of any beam, whose camera sees by colours or by lines.
 Rig random_port_rig(std::uint64_t seed) {
     Dice dice(seed);
-    Rig rig = small_rig(40, 30);
+    Rig rig = habcam(40, 30);
     rig.sled = {.altitude_m = dice.over_octaves(0.6, 6.0),
                 .pitch_rad = dice.between(-15.0, 15.0) * kDegree,
                 .roll_rad = dice.between(-15.0, 15.0) * kDegree};
@@ -199,7 +191,7 @@ TEST(PortLight, FollowsKinksThatLieBetweenTheWatersIndices) {
     for (const Beam& beam : {smooth, steep, soft}) {
         for (const PortKind kind : kPortKinds) {
             Dice dice(5);
-            Rig rig = small_rig(pixels(136), pixels(102));
+            Rig rig = habcam(pixels(136), pixels(102));
             rig.camera.sensor = line_sensor();
             rig.strobes.erase(rig.strobes.begin() + 2, rig.strobes.end());
             for (Strobe& strobe : rig.strobes) strobe.beam = scaled_to_flux(beam);

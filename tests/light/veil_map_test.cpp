@@ -7,13 +7,13 @@
 #include "image/exr.h"
 #include "lightmap/lightmap.h"
 #include "lightmap/lightmap_file.h"
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "support/dice.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"
 #include "support/temp_folder.h"
+#include "support/veil_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -30,20 +30,10 @@ namespace {
 constexpr double kOfSignal = 1e-4;  // what is promised of the sum
 constexpr double kFloatSum = 4.0 * 0x1p-24;
 
-Spectrum line(const std::string& name, double at_400_nm, double at_700_nm) {
-    return {name, {300.0, 400.0, 700.0, 900.0}, {at_400_nm, at_400_nm, at_700_nm, at_700_nm}};
-}
-
-// HabCam in coastal water, particles and the sea's own scattering.
+// With the sea's own scattering, too.
 Rig coast(int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    rig.water.absorption_per_m = line("absorption", 0.3, 0.65);
-    rig.water.scatterers = {
-        {line("particles", 0.28, 0.18), fournier_forand(0.0183)},
-        {line("sea", 0.006, 0.0006), {.name = "molecular", .kind = MolecularScattering{}}}};
+    Rig rig = aphotic::coast(width_px, height_px);
+    rig.water.scatterers.push_back(sea());
     return rig;
 }
 
@@ -274,7 +264,7 @@ TEST(VeilMap, IsThereWithoutAFloor) {
 
 // Behind a port each wavelength has its own ray.
 TEST(VeilMap, BehindAPortIsThatOfEachWavelengthsRay) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml");
+    Rig rig = scene_rig("port.toml");
     const Rig water = coast(96, 72);
     rig.water = water.water;
     const Lightmap map = LightmapMaker(rig, std::nullopt, options()).map(rig.sled);

@@ -4,8 +4,8 @@
 // of no angle, foot point or crease.
 #include "light/veil.h"
 
-#include "rig/file/rig_reader.h"
 #include "support/random_beam.h"
+#include "support/veil_rig.h"
 
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -30,32 +30,8 @@ constexpr double kRoundingOfSums = 1e-13;
 constexpr double kOfQuadrature = 1e-10;  // what is asked of closed forms
 const WaterRay kDown{Vector3d::Zero(), Vector3d::UnitZ()};
 
-Spectrum flat(const std::string& name, double value) {
-    return {name, {300.0, 900.0}, {value, value}};
-}
-
-// Evenly into its half of all directions: I = 1.
-Beam half_isotropic(double half_angle_rad = 0.5 * pi) {
-    Beam beam{.name = "even", .weights = ConeWeights::Literal, .cones = {}};
-    beam.cones = {{.part = "even", .half_angle_rad = half_angle_rad, .weight = 1.0, .exponent = 0}};
-    return beam;
-}
-
 PhaseFunction isotropic() {
     return {.name = "isotropic", .kind = HenyeyGreenstein{.g = 0.0}};
-}
-
-// One lamp beside a camera that looks down.
-Rig one_lamp(const Vector3d& position_m, const Vector3d& axis, Beam beam, PhaseFunction phase) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
-    rig.strobes[0].position_m = position_m;
-    rig.strobes[0].axis = axis.normalized();
-    rig.strobes[0].beam = std::move(beam);
-    rig.strobes[0].spectrum = flat("lamp", 1.0);
-    rig.water.absorption_per_m = flat("absorption", 0.2);
-    rig.water.scatterers = {{flat("scattering", 0.3), std::move(phase)}};
-    return rig;
 }
 
 double sum_of_weights(const Rig& rig, const WaterRay& ray, double length_m) {
@@ -102,7 +78,7 @@ double by_definition(const Rig& rig, const WaterRay& ray, double length_m) {
 TEST(Veil, OfAnEvenLampAndEvenScatteringIsAnAngle) {
     const double h = 0.5;
     for (const double t_0 : {-0.4, 0.0, 0.7}) {
-        const Rig rig = one_lamp({h, 0.0, t_0}, -Vector3d::UnitX(), half_isotropic(), isotropic());
+        const Rig rig = one_lamp({h, 0.0, t_0}, -Vector3d::UnitX(), even_beam(), isotropic());
         for (const double length_m : {0.2, 1.0, 2.0, 30.0}) {
             const double angle = std::atan((length_m - t_0) / h) - std::atan(-t_0 / h);
             EXPECT_NEAR(sum_of_weights(rig, kDown, length_m) / (angle / (4.0 * pi * h)),
@@ -122,7 +98,7 @@ TEST(Veil, OfAnEvenLampInLossyWaterIsSunsFunction) {
     };
     for (const double h : {0.02, 0.5, 3.0}) {
         for (const double t_0 : {-0.3, 0.0, 0.1}) {
-            Rig rig = one_lamp({0.0, h, t_0}, -Vector3d::UnitY(), half_isotropic(), isotropic());
+            Rig rig = one_lamp({0.0, h, t_0}, -Vector3d::UnitY(), even_beam(), isotropic());
             const double loss_per_m = rig.water.attenuation_per_m(kNm);
             const double length_m = 2.5;
             const double from = std::max(std::atan(-t_0 / h), kVeilCut - 0.5 * pi);
@@ -139,7 +115,7 @@ TEST(Veil, OfAnEvenLampInLossyWaterIsSunsFunction) {
 TEST(Veil, IsNotOfLightThatIsTurnedByLessThanTheCut) {
     const double h = 0.05;
     const double t_0 = 1.0;
-    const Rig rig = one_lamp({h, 0.0, t_0}, -Vector3d::UnitX(), half_isotropic(), isotropic());
+    const Rig rig = one_lamp({h, 0.0, t_0}, -Vector3d::UnitX(), even_beam(), isotropic());
     const double angle = std::atan((3.0 - t_0) / h) - (kVeilCut - 0.5 * pi);
     EXPECT_NEAR(sum_of_weights(rig, kDown, 3.0) / (angle / (4.0 * pi * h)), 1.0, kRoundingOfSums);
     // Up to where the turn is the cut, there is none.
@@ -151,7 +127,7 @@ TEST(Veil, IsCutAtTheEdgesOfCones) {
     const Vector3d axis(-0.6, 0.1, 1.0);
     const Vector3d lamp_m(0.5, 0.05, 0.0);
     const double gamma = 12.0 * kDegree_rad;
-    const Rig rig = one_lamp(lamp_m, axis, half_isotropic(gamma), isotropic());
+    const Rig rig = one_lamp(lamp_m, axis, even_beam(gamma), isotropic());
     const auto off_edge = [&](double t) {
         return angle_between(t * Vector3d::UnitZ() - lamp_m, axis) - gamma;
     };
@@ -175,7 +151,7 @@ TEST(Veil, ScalesWithTheWater) {
     constexpr double kScale = 3.0;
     const Rig rig = one_lamp({0.4, 0.2, -0.1},
                              {-0.3, 0.0, 1.0},
-                             half_isotropic(0.6),
+                             even_beam(0.6),
                              {.name = "hg", .kind = HenyeyGreenstein{.g = 0.9}});
     Rig larger = rig;
     larger.strobes[0].position_m *= kScale;
@@ -188,7 +164,7 @@ TEST(Veil, ScalesWithTheWater) {
 
 TEST(Veil, EndsAtTheFloor) {
     const Vector3d lamp_m(0.5, 0.0, 0.2);
-    const Rig rig = one_lamp(lamp_m, {-0.3, 0.0, 1.0}, half_isotropic(1.2), isotropic());
+    const Rig rig = one_lamp(lamp_m, {-0.3, 0.0, 1.0}, even_beam(1.2), isotropic());
     VeilNodes nodes;
     Veil(rig).nodes(0, kDown, 2.0, nodes);
     ASSERT_FALSE(nodes.path_m.empty());
@@ -200,7 +176,7 @@ TEST(Veil, EndsAtTheFloor) {
 }
 
 TEST(Veil, HasAnEndWithoutAFloor) {
-    const Rig rig = one_lamp({0.5, 0.0, 0.0}, -Vector3d::UnitX(), half_isotropic(), isotropic());
+    const Rig rig = one_lamp({0.5, 0.0, 0.0}, -Vector3d::UnitX(), even_beam(), isotropic());
     const double far = Veil(rig).radiance(kDown, 1e3, kNm);
     const double endless = Veil(rig).radiance(kDown, std::numeric_limits<double>::infinity(), kNm);
     EXPECT_NEAR(endless / far, 1.0, kOfQuadrature);
@@ -208,13 +184,12 @@ TEST(Veil, HasAnEndWithoutAFloor) {
 
 TEST(Veil, IsFiniteWithTheLampOnTheRayAndBehindTheCamera) {
     for (const double t_0 : {-0.5, 0.0, 0.5}) {
-        const Rig rig =
-            one_lamp({0.0, 0.0, t_0}, Vector3d::UnitZ(), half_isotropic(1.0), isotropic());
+        const Rig rig = one_lamp({0.0, 0.0, t_0}, Vector3d::UnitZ(), even_beam(1.0), isotropic());
         EXPECT_TRUE(std::isfinite(Veil(rig).radiance(kDown, 2.0, kNm)));
     }
     // A micrometre aside is as good as on the ray, where the lamp is behind the camera: there
     // p I b / d^2 is integrated, d = t + 0.5.
-    const Rig rig = one_lamp({0.0, 0.0, -0.5}, Vector3d::UnitZ(), half_isotropic(1.0), isotropic());
+    const Rig rig = one_lamp({0.0, 0.0, -0.5}, Vector3d::UnitZ(), even_beam(1.0), isotropic());
     constexpr double kMicrometre = 1e-5;  // relative to what it is beside
     EXPECT_NEAR(sum_of_weights(rig, kDown, 2.0), (1.0 / 0.5 - 1.0 / 2.5) / (4.0 * pi), kMicrometre);
 }
@@ -275,7 +250,7 @@ TEST(Veil, OfASteepBeamBetweenKinks) {
         angles.push_back(degrees * kDegree_rad);
         values.push_back(1.0 / (1.0 + 0.1 * degrees));
     }
-    Beam steep = half_isotropic();
+    Beam steep = even_beam();
     steep.cones[0].exponent = 3000.0;
     for (const double tilt : {-0.1, 0.0, 0.2, 0.43}) {
         const Rig rig = one_lamp(
@@ -298,7 +273,7 @@ TEST(Veil, OfATableForMapsIsThatOfTheTable) {
         table.intensity.push_back(std::pow(std::cos(table.vertical_rad.back()), 8.0) +
                                   (i < 30 ? 0.5 : 0.2));
     }
-    Beam beam = half_isotropic();
+    Beam beam = even_beam();
     beam.cones.clear();
     beam.pattern = table;
     for (const double tilt : {-0.3, 0.0, 0.2, 0.6}) {
@@ -315,9 +290,9 @@ TEST(Veil, OfATableForMapsIsThatOfTheTable) {
 }
 
 TEST(Veil, StatesItsError) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    Rig rig = habcam();
     EXPECT_EQ(veil_error(rig), 0.0);
-    rig.water.scatterers = {{flat("scattering", 0.22), fournier_forand(0.0183)}};
+    rig.water.scatterers = {{flat(0.22), fournier_forand(0.0183)}};
     EXPECT_LT(veil_error(rig), 1e-9);
     EXPECT_GT(veil_error(rig, 2), 10.0 * veil_error(rig, 4));
 }

@@ -13,6 +13,7 @@
 #include "support/random_beam.h"
 #include "support/random_camera.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "support/temp_folder.h"
 #include "validation/tracer.h"
 
@@ -37,14 +38,6 @@ constexpr double kPromise = 1e-4;
 // The error that is asked for, the tracer's own grid, and the rounding of a sum of a dozen floats.
 constexpr double kAsked = 1e-5;
 constexpr double kWithoutPort = kAsked + kSpectralError + 12.0 * 0x1p-24;
-
-Rig scene(const std::string& name, int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + name + ".toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    return rig;
-}
 
 Lightmap map_of(const Rig& rig, int threads = 1) {
     return LightmapMaker(rig, std::nullopt, {.error = kAsked, .threads = threads}).map(rig.sled);
@@ -111,7 +104,7 @@ Rig random_rig(std::mt19937& engine) {
     const auto between = [&](double least, double most) {
         return std::uniform_real_distribution<double>(least, most)(engine);
     };
-    Rig rig = scene("habcam", 96, 72);
+    Rig rig = habcam(96, 72);
     rig.sled = {.altitude_m = between(0.5, 6.0),
                 .pitch_rad = between(-15.0, 15.0) * kDegree,
                 .roll_rad = between(-15.0, 15.0) * kDegree};
@@ -144,7 +137,7 @@ TEST(Lightmap, IsThatOfTheTracerForRandomRigs) {
 
 // An error may be asked for that floats cannot hold: the promise counts their rounding.
 TEST(Lightmap, PromisesNoLessThanFloatsRound) {
-    const Rig rig = scene("habcam", 136, 102);
+    const Rig rig = habcam(136, 102);
     const LightmapOptions least{.error = 1e-7, .threads = 1};
     const Difference difference =
         against_tracer(rig, LightmapMaker(rig, std::nullopt, least).map(rig.sled));
@@ -155,7 +148,7 @@ TEST(Lightmap, PromisesNoLessThanFloatsRound) {
 
 // 57 by 49 degrees off the axis in air, close to the floor: what dispersion does grows with both.
 TEST(Lightmap, IsThatOfTheTracerBehindAPortOfAWideLens) {
-    Rig rig = scene("port", 64, 48);
+    Rig rig = scene_rig("port.toml", 64, 48);
     rig.camera.pixel_pitch_m *= 4.2;
     for (const double altitude_m : {0.7, 3.0}) {
         rig.sled.altitude_m = altitude_m;
@@ -164,7 +157,7 @@ TEST(Lightmap, IsThatOfTheTracerBehindAPortOfAWideLens) {
 }
 
 TEST(Lightmap, IsThatOfTheTracerForLampsOfASize) {
-    Rig rig = scene("habcam", 96, 72);
+    Rig rig = habcam(96, 72);
     for (Strobe& strobe : rig.strobes) strobe.emitter = {.across_m = 0.0635, .along_m = 0.0302};
     expect_equal(rig, kWithoutPort, "emitters");
 }
@@ -172,7 +165,7 @@ TEST(Lightmap, IsThatOfTheTracerForLampsOfASize) {
 // A long emitter that shines level, nearly fore or aft: turned by 90 degrees it would stand
 // upright.
 TEST(Lightmap, IsThatOfTheTracerForEmittersThatShineNearlyForeOrAft) {
-    Rig rig = scene("habcam", 24, 18);
+    Rig rig = habcam(24, 18);
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
     rig.strobes[0].position_m = {-0.2, 0.3, 1.5};
     rig.strobes[0].beam.cones = {{.part = "all", .half_angle_rad = 90.0 * kDegree, .weight = 1.0}};
@@ -244,7 +237,7 @@ TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfPort) {
 }
 
 TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
-    Rig rig = scene("habcam", 96, 72);
+    Rig rig = habcam(96, 72);
     rig.seafloor.phong = 0.7;
     for (const double size : {0.0, 3.5, 40.0, 500.0}) {
         rig.seafloor.phong_size = size;
@@ -253,7 +246,7 @@ TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
 }
 
 TEST(Lightmap, IsThatOfTheTracerUpToTheHorizon) {
-    Rig rig = scene("habcam", 96, 72);
+    Rig rig = habcam(96, 72);
     rig.sled = {.altitude_m = 4.0, .pitch_rad = -80.0 * kDegree};  // the fore strobe 0.2 m over it
     for (const double loss_per_m : {0.0, 0.3}) {
         rig.water.uniform_loss_per_m = loss_per_m;
@@ -266,7 +259,7 @@ TEST(Lightmap, IsThatOfTheTracerUpToTheHorizon) {
 
 // The same tables serve every sled within their paths, and give the map that its own would.
 TEST(Lightmap, ServesOtherSleds) {
-    Rig rig = scene("habcam", 96, 72);
+    Rig rig = habcam(96, 72);
     const Sled low{.altitude_m = 1.0, .pitch_rad = -0.1, .roll_rad = 0.05};
     const Sled high{.altitude_m = 4.0, .pitch_rad = 0.1, .roll_rad = -0.05};
     const LightmapMaker maker(rig, paths_of(rig, {low, high}), {.error = kAsked, .threads = 1});
@@ -278,7 +271,7 @@ TEST(Lightmap, ServesOtherSleds) {
 }
 
 TEST(Lightmap, RefusesSledsWhosePathsItsTablesDoNotServe) {
-    const Rig rig = scene("habcam", 32, 24);
+    const Rig rig = habcam(32, 24);
     const LightmapMaker maker(rig, PathRange{.shortest_m = 3.9, .longest_m = 5.0}, {});
     EXPECT_NO_THROW((void)maker.map({.altitude_m = 2.0}));
     EXPECT_THROW((void)maker.map({.altitude_m = 1.5}), InputError);
@@ -291,7 +284,7 @@ std::string sled_refusal(const Rig& rig, const Sled& sled) {
 
 // The aft strobe, half a metre behind the pupil, stands h cos(p) - 0.5 m sin(p) over the floor.
 TEST(Lightmap, RefusesSledsThatPutAStrobeUnderTheFloor) {
-    const Rig rig = scene("habcam", 32, 24);
+    const Rig rig = habcam(32, 24);
     EXPECT_EQ(sled_refusal(rig, {.altitude_m = 0.02, .pitch_rad = 30.0 * kDegree}),
               "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' is 0.2327 m below the sea "
               "floor; allowed: at least 0.001 m above it");
@@ -309,7 +302,7 @@ TEST(Lightmap, RefusesSledsThatPutAStrobeUnderTheFloor) {
 }
 
 TEST(Lightmap, RefusesSledsThatPutPartOfAnEmitterUnderTheFloor) {
-    Rig rig = scene("one-lamp", 32, 24);
+    Rig rig = scene_rig("one-lamp.toml", 32, 24);
     rig.strobes[0].position_m = {0.0, 0.5, 0.0};
     rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
     rig.strobes[0].emitter = {.across_m = 0.1, .along_m = 0.1};
@@ -325,7 +318,7 @@ TEST(Lightmap, RefusesSledsThatPutPartOfAnEmitterUnderTheFloor) {
 
 // Lamps a hundredth of their height apart: 1e8 of them, and a map would take a day.
 TEST(Lightmap, RefusesAnEmitterOfMoreLampsThanAnyoneHasTimeFor) {
-    Rig rig = scene("one-lamp", 32, 24);
+    Rig rig = scene_rig("one-lamp.toml", 32, 24);
     rig.strobes[0].emitter = {.across_m = 0.2, .along_m = 0.2};
     const std::string refusal = sled_refusal(rig, {.altitude_m = 0.002});
     EXPECT_TRUE(
@@ -336,20 +329,20 @@ TEST(Lightmap, RefusesAnEmitterOfMoreLampsThanAnyoneHasTimeFor) {
 }
 
 TEST(Lightmap, RefusesObjectsAndScenes) {
-    Rig with_object = scene("habcam", 8, 6);
+    Rig with_object = habcam(8, 6);
     with_object.objects.push_back({.name = "ball",
                                    .shape = Sphere{.centre_m = {0.0, 0.0, 1.5}, .radius_m = 0.1},
                                    .reflectance = with_object.seafloor.reflectance});
     EXPECT_EQ(
         refusal_of([&] { return map_of(with_object); }),
         "found the object 'ball'; allowed: the bare floor, since a lightmap shows nothing else");
-    Rig with_scene = scene("habcam", 8, 6);
+    Rig with_scene = habcam(8, 6);
     with_scene.scene = "reef.pov";
     EXPECT_THROW(map_of(with_scene), InputError);
 }
 
 TEST(Lightmap, IsTheSameToTheBitForAnyThreads) {
-    Rig rig = scene("habcam", 200, 150);
+    Rig rig = habcam(200, 150);
     const Lightmap one = map_of(rig, 1);
     for (const int threads : {2, 3, 7}) EXPECT_EQ(map_of(rig, threads).samples, one.samples);
 }
@@ -384,7 +377,7 @@ TEST(Lightmap, DoesNotDependOnTheScaleOfABeamsTable) {
 // Else maps would be black, infinite, or of few digits.
 TEST(Lightmap, RefusesALightThatFloatsDoNotHold) {
     const auto error_of = [](const auto& change) {
-        Rig rig = scene("habcam", 8, 6);
+        Rig rig = habcam(8, 6);
         change(rig);
         return refusal_of([&] { return map_of(rig); });
     };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/oplab_export.h"
 
-#include "rig/file/rig_reader.h"
 #include "support/npy.h"
+#include "support/scene_rig.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,6 @@ constexpr int kWidth_px = 34;
 constexpr int kHeight_px = 26;
 constexpr std::size_t kPixels = std::size_t{kWidth_px} * kHeight_px;
 constexpr double kFloat = 1e-5;  // a few roundings, and maps right to 1e-5
-
-Rig habcam() {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / kWidth_px;
-    rig.camera.width_px = kWidth_px;
-    rig.camera.height_px = kHeight_px;
-    return rig;
-}
 
 std::vector<double> altitudes() {
     std::vector<double> altitude_m;
@@ -68,7 +60,7 @@ class OplabExport : public testing::Test {
 };
 
 TEST_F(OplabExport, KeepsItsBoundsAndStatesWhatItLeaves) {
-    make(habcam());
+    make(habcam(kWidth_px, kHeight_px));
     ASSERT_EQ(parameters_.size(), 3 * 3 * kPixels);
     double squares = 0.0;
     double off = 0.0;
@@ -100,7 +92,7 @@ TEST_F(OplabExport, KeepsItsBoundsAndStatesWhatItLeaves) {
 
 // (I gain / f - mean) / std 3 % + 30 %, as oplab has it, is 30 % of the floor's reflectance.
 TEST_F(OplabExport, MakesOplabDivideByTheLight) {
-    make(habcam());
+    make(habcam(kWidth_px, kHeight_px));
     const double h = altitudes()[7];
     for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {
@@ -115,7 +107,7 @@ TEST_F(OplabExport, MakesOplabDivideByTheLight) {
 }
 
 TEST_F(OplabExport, HasNoZeroWhereThereIsNoLight) {
-    Rig rig = habcam();
+    Rig rig = habcam(kWidth_px, kHeight_px);
     for (Strobe& strobe : rig.strobes) strobe.power = 0.0;
     make(rig);
     for (std::size_t i = 0; i < 3 * kPixels; ++i) {

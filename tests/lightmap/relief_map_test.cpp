@@ -4,11 +4,11 @@
 // shadows by themselves; and on a relief that is a plane against the lightmap of that.
 #include "lightmap/relief_map.h"
 
-#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/dice.h"
 #include "support/flat.h"
 #include "support/random_camera.h"
+#include "support/scene_rig.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -30,14 +30,6 @@ constexpr double kOfVeil = 1e-2;
 constexpr double kOfMostVeil = 1e-3;
 constexpr double kMost = 0.98;
 constexpr int kEdge_px = 2;
-
-Rig habcam(int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    return rig;
-}
 
 Relief plane_of(const Rig& rig, const ReliefMapMaker& maker) {
     Relief relief{.width_px = rig.camera.width_px, .height_px = rig.camera.height_px};

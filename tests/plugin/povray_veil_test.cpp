@@ -7,6 +7,7 @@
 #include "spectral/integrator.h"
 #include "support/random_camera.h"
 #include "support/rendered.h"
+#include "support/veil_rig.h"
 
 #include <Eigen/Geometry>
 
@@ -23,14 +24,8 @@ constexpr double kHalfFloat = 6e-4;
 
 const PhaseFunction kForward{.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}};
 
-Spectrum line(const std::string& name, double at_400_nm, double at_700_nm) {
-    return {name, {300.0, 400.0, 700.0, 900.0}, {at_400_nm, at_400_nm, at_700_nm, at_700_nm}};
-}
-
 Rig in_water(Rig rig, const PhaseFunction& phase = kForward) {
-    rig.water.absorption_per_m = line("absorption", 0.15, 0.5);
-    rig.water.scatterers = {{line("particles", 0.3, 0.2), phase}};
-    return rig;
+    return with_particles(std::move(rig), phase);
 }
 
 // Half of the intensity at 40 degrees off the axis.

@@ -7,6 +7,7 @@
 #include "spectral/phase_function.h"
 #include "support/random_camera.h"
 #include "support/rendered.h"
+#include "support/veil_rig.h"
 #include "validation/tracer.h"
 
 #include <numbers>
@@ -18,15 +19,9 @@ namespace {
 constexpr double kOfTheSum = 6e-4;
 constexpr double kMiddle_nm = 550.0;
 
-Spectrum line(const std::string& name, double at_400_nm, double at_700_nm) {
-    return {name, {300.0, 400.0, 700.0, 900.0}, {at_400_nm, at_400_nm, at_700_nm, at_700_nm}};
-}
-
 Rig in_water(Rig rig, const PhaseFunction& phase) {
-    rig.water.absorption_per_m = line("absorption", 0.15, 0.5);
-    rig.water.scatterers = {
-        {line("particles", 0.3, 0.2), phase},
-        {line("sea", 0.006, 0.0006), {.name = "molecular", .kind = MolecularScattering{}}}};
+    rig = with_particles(std::move(rig), phase);
+    rig.water.scatterers.push_back(sea());
     return rig;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/geometry_signature.h"
 
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "spectral/curve_loader.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,6 @@
 
 namespace aphotic::geometry_signature_test {
 namespace {
-
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
-Rig habcam() {
-    return rig_of("habcam.toml");
-}
 
 Spectrum flash(const char* name) {
     return load_curve(name, CurveRole::LampSpectrum, {});
@@ -71,7 +63,7 @@ TEST(GeometrySignature, KnowsOnlyWhatMovesLight) {
 }
 
 TEST(GeometrySignature, KnowsObjectsByShapeAndGlossAndNotByColour) {
-    const Rig rig = rig_of("objects.toml");
+    const Rig rig = scene_rig("objects.toml");
     const auto before = geometry_signature(rig);
     EXPECT_EQ(geometry_signature(
                   changed(rig, [](Rig& r) { r.objects[0].reflectance = material("red-algae"); })),
@@ -104,7 +96,7 @@ TEST(GeometrySignature, KnowsBeamsByTheirLight) {
 }
 
 TEST(GeometrySignature, KnowsWhatMovesLight) {
-    const auto before = geometry_signature(rig_of("port.toml"));
+    const auto before = geometry_signature(scene_rig("port.toml"));
     EXPECT_NE(before, geometry_signature(habcam()));
     for (const Change& change :
          std::vector<Change>{[](Rig& rig) { rig.sled.altitude_m += 1e-9; },
@@ -129,7 +121,7 @@ TEST(GeometrySignature, KnowsWhatMovesLight) {
                              [](Rig& rig) { rig.strobes[3].emitter = Emitter{}; },
                              [](Rig& rig) { std::swap(rig.strobes[0], rig.strobes[3]); },
                              [](Rig& rig) { rig.strobes.pop_back(); }}) {
-        EXPECT_NE(geometry_signature(changed(rig_of("port.toml"), change)), before);
+        EXPECT_NE(geometry_signature(changed(scene_rig("port.toml"), change)), before);
     }
     Rig glossy = habcam();
     glossy.seafloor.phong = 0.5;

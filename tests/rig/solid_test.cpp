@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/solid.h"
 
-#include "rig/file/rig_reader.h"
+#include "support/scene_rig.h"
 #include "tests/support/box_mesh.h"
 
 #include <gtest/gtest.h>
@@ -16,10 +16,6 @@ using Eigen::Vector3d;
 
 constexpr double kRounding = 1e-14;  // some operations on doubles near 1
 const Box kBox{.least_m = {-0.3, 0.1, 1.0}, .most_m = {0.2, 0.6, 1.5}};
-
-Rig habcam() {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-}
 
 Object object_of(const Shape& shape) {
     return {.name = "thing", .shape = shape, .reflectance = habcam().seafloor.reflectance};

@@ -3,9 +3,9 @@
 
 #include "rig/geometry.h"
 
-#include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
 #include "support/flat.h"
+#include "support/scene_rig.h"
 #include "tests/support/closed_form.h"
 
 #include <gtest/gtest.h>
@@ -20,10 +20,6 @@ namespace {
 
 constexpr unsigned kSeed = 20240607;
 constexpr double kBrightColour = 1.0;  // far from the limit of single precision
-
-Rig habcam() {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-}
 
 double brightest_of(const Rig& rig, double lambda_nm) {
     double brightest = 0.0;

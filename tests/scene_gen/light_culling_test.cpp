@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_culling.h"
 
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
+#include "support/dice.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +23,6 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr unsigned kSeed = 20240613;
-
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
 
 // --- The list -------------------------------------------------------------------------- --------
 
@@ -46,11 +42,11 @@ const std::pair<std::string, std::string> kNoHighlight{"the floor's highlight",
                                                        "its strength is 0"};
 
 TEST(Omissions, OfHabCamAreThePortAndTheHighlight) {
-    EXPECT_EQ(omitted(rig_of("habcam.toml")), (Pairs{kNoPort, kNoHighlight}));
+    EXPECT_EQ(omitted(scene_rig("habcam.toml")), (Pairs{kNoPort, kNoHighlight}));
 }
 
 TEST(Omissions, NameTheHighlightsThatObjectsHaveNot) {
-    EXPECT_EQ(omitted(rig_of("objects.toml")),
+    EXPECT_EQ(omitted(scene_rig("objects.toml")),
               (Pairs{kNoPort,
                      kNoHighlight,
                      {"the highlight of object 'rock'", "its strength is 0"},
@@ -58,7 +54,7 @@ TEST(Omissions, NameTheHighlightsThatObjectsHaveNot) {
 }
 
 TEST(Omissions, NameTheMediumInClearWaterOnly) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.water.multiple = 0.0;
     EXPECT_EQ(omitted(rig), (Pairs{kMedium, kNoPort, kNoHighlight}));
     rig.water.uniform_loss_per_m = 1e-6;
@@ -68,7 +64,7 @@ TEST(Omissions, NameTheMediumInClearWaterOnly) {
 }
 
 TEST(Omissions, NameAStrobeWithoutPowerAndNotItsCones) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.strobes[1].power = 0.0;
     rig.strobes[1].beam.cones[0].weight = 0.0;
     EXPECT_EQ(omitted(rig), (Pairs{kNoPort, kNoHighlight, {"strobe 'aft'", "its power is 0"}}));
@@ -78,7 +74,7 @@ TEST(Omissions, NameAStrobeWithoutPowerAndNotItsCones) {
 }
 
 TEST(Omissions, NameEveryConeWithoutWeight) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.strobes[0].beam.cones[1].weight = 0.0;
     rig.strobes[3].beam.cones[2].weight = 0.0;
     EXPECT_EQ(omitted(rig),
@@ -92,7 +88,7 @@ TEST(Omissions, NameEveryConeWithoutWeight) {
 // above the strobe.
 TEST(Omissions, NameEveryConeThatLightsNothingInView) {
     const std::string reason = "it lights nothing in view";
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.strobes[2].axis = -Vector3d::UnitZ();
     EXPECT_EQ(omitted(rig),
               (Pairs{kNoPort,
@@ -124,7 +120,7 @@ Beam cone_of(double half_angle_rad) {
 
 // HabCam's camera over a level floor, with one strobe.
 Rig rig_with_strobe(const Vector3d& position_m, const Vector3d& axis) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.sled.pitch_rad = 0.0;
     rig.strobes.resize(1, rig.strobes.front());
     rig.strobes[0].position_m = position_m;
@@ -170,7 +166,7 @@ TEST(LightsTheView, OfABeamThatMeetsAnObjectIsYes) {
 // down in view, however far away.
 TEST(LightsTheView, OfABeamTowardsTheHorizonInViewIsYes) {
     for (const char* scene : {"habcam.toml", "port.toml"}) {
-        Rig rig = rig_of(scene);
+        Rig rig = scene_rig(scene);
         // The horizon runs through one cell of the grid, which is a degree high, and the next.
         for (double pitch_deg = 80.0; pitch_deg < 81.0; pitch_deg += 0.1) {
             rig.sled.pitch_rad = pitch_deg * kDegree;
@@ -194,19 +190,6 @@ TEST(LightsTheView, OfAViewWithoutFloorIsNo) {
 
 // --- Brute force ----------------------------------------------------------------------- --------
 
-class Dice {
-  public:
-    explicit Dice(unsigned seed) : random_(seed) {}
-
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(random_);
-    }
-    bool chance(double share) { return between(0.0, 1.0) < share; }
-
-  private:
-    std::mt19937_64 random_;
-};
-
 std::optional<Vector3d> floor_at(const Rig& rig, double column, double row, double lambda_nm) {
     const WaterRay ray = pixel_ray(rig, column, row, lambda_nm);
     const auto distance_m = distance_to(floor_plane(rig.sled), ray);
@@ -224,8 +207,8 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 }
 
 Rig random_rig(Dice& dice, bool has_port) {
-    static const Rig kHabcam = rig_of("habcam.toml");
-    static const Rig kBehindAPort = rig_of("port.toml");
+    static const Rig kHabcam = scene_rig("habcam.toml");
+    static const Rig kBehindAPort = scene_rig("port.toml");
     Rig rig = has_port ? kBehindAPort : kHabcam;
     rig.sled = {.altitude_m = dice.between(0.5, 6.0),
                 .pitch_rad = dice.between(-0.7, 0.7),
@@ -306,7 +289,7 @@ TEST(LightsTheView, NeverLeavesOutLightInViewBehindAPort) {
 // At 720 nm the image's corner lies some 3 mm outside that of 560 nm: half a degree, from a lamp
 // that is 0.3 m away, and many from a low one.
 TEST(LightsTheView, TakesInTheRimThatOnlyOtherWavelengthsSee) {
-    Rig rig = rig_of("port.toml");
+    Rig rig = scene_rig("port.toml");
     rig.sled.pitch_rad = 0.0;
     rig.strobes.resize(1, rig.strobes.front());
     Strobe& strobe = rig.strobes[0];

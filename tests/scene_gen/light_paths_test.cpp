@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
-#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "spectral/curve_loader.h"
+#include "support/dice.h"
 #include "support/flat.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -74,16 +75,6 @@ Vector3d above_floor(const Sled& sled, double x_m, double y_m, double height_m) 
     const double z_m = (n.dot(floor.point_m) - n.x() * x_m - n.y() * y_m) / n.z();
     return Vector3d(x_m, y_m, z_m) + height_m * n;
 }
-
-class Dice {
-  public:
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(random_);
-    }
-
-  private:
-    std::mt19937_64 random_{kSeed};
-};
 
 // --- Brute force ----------------------------------------------------------------------- --------
 
@@ -246,7 +237,7 @@ TEST(PathRange, TakesInAllOfAnEmitter) {
 
 TEST(PathRange, TakesInEveryPathOfRandomRigs) {
     constexpr int kRigs = 60;
-    Dice dice;
+    Dice dice(kSeed);
     int without_horizon = 0;
     for (int n = 0; n < kRigs; ++n) {
         Rig rig = camera_rig();
@@ -462,10 +453,6 @@ TEST(PathRange, FindsTheHorizonInTheMiddleOfAnEdgeBehindAPort) {
 
 // --- The family ------------------------------------------------------------------------ --------
 
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
 std::vector<std::string> names_of(const std::vector<Spectrum>& curves) {
     std::vector<std::string> names;
     for (const Spectrum& curve : curves) names.push_back(curve.name());
@@ -486,7 +473,7 @@ Spectrum algae() {
 }
 
 TEST(LightFamilyOfARig, HasEveryLampOnEveryMaterial) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = scene_rig("habcam.toml");
     rig.strobes[2].spectrum = arc();
     rig.materials = {algae(), rig.seafloor.reflectance, algae()};
     const LightFamily family = light_family(rig);
@@ -558,9 +545,9 @@ double worst_share_of_tilt(const Rig& rig, int pixels, Dice& dice) {
 constexpr double kTiltRoom = 0.06;
 
 TEST(PortTilt, BoundsTheChangeOfLightOfSingleLamps) {
-    Dice dice;
+    Dice dice(kSeed);
     for (int n = 0; n < 12; ++n) {
-        Rig rig = rig_of("port.toml");
+        Rig rig = scene_rig("port.toml");
         rig.sled = {.altitude_m = dice.between(0.7, 4.0),
                     .pitch_rad = dice.between(-0.4, 0.4),
                     .roll_rad = dice.between(-0.4, 0.4)};

@@ -10,6 +10,7 @@
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "support/temp_folder.h"
+#include "support/veil_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -23,17 +24,6 @@ namespace aphotic::povray_veil_test {
 namespace {
 
 const PhaseFunction kForward{.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}};
-
-Spectrum line(const std::string& name, double at_400_nm, double at_700_nm) {
-    return {name, {300.0, 400.0, 700.0, 900.0}, {at_400_nm, at_400_nm, at_700_nm, at_700_nm}};
-}
-
-Rig in_water(const PhaseFunction& phase) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.water.absorption_per_m = line("absorption", 0.15, 0.5);
-    rig.water.scatterers = {{line("particles", 0.3, 0.2), phase}};
-    return rig;
-}
 
 Rig with_smooth_beams(Rig rig) {
     for (Strobe& strobe : rig.strobes) {
@@ -59,7 +49,8 @@ double error_of(const Rig& rig, int samples) {
 TEST(PovrayVeil, IsOffByTheSecondOrderOfItsSamples) {
     constexpr double kOrder = 4.0;
     constexpr double kNearly = 0.2;
-    for (const Rig& rig : {in_water(kForward), with_smooth_beams(in_water(kForward))}) {
+    for (const Rig& rig : {with_particles(habcam(), kForward),
+                           with_smooth_beams(with_particles(habcam(), kForward))}) {
         const double coarse = error_of(rig, 40);
         const double fine = error_of(rig, 80);
         EXPECT_NEAR(coarse / fine, kOrder, kNearly * kOrder) << coarse << " " << fine;
@@ -69,7 +60,7 @@ TEST(PovrayVeil, IsOffByTheSecondOrderOfItsSamples) {
 
 // Light that goes d from the lamp to a point of the ray, t on to the camera, is turned by psi.
 TEST(PovrayVeil, TakesItsSamplesWhereTheyLie) {
-    Rig rig = with_smooth_beams(in_water(kForward));
+    Rig rig = with_smooth_beams(with_particles(habcam(), kForward));
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
     const std::vector<LampGrid> lamps(1);
     const WaterRay ray{.origin_m = {0.0, 0.0, 0.0}, .direction = {0.0, 0.0, 1.0}};
@@ -90,7 +81,7 @@ TEST(PovrayVeil, TakesItsSamplesWhereTheyLie) {
 
 // Nothing of it is in water that does not scatter.
 TEST(PovrayVeil, ChangesNothingInWaterThatDoesNotScatter) {
-    const Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    const Rig rig = habcam();
     const SceneSet with = make_scene_set(rig, planned(rig, kVeilSamples));
     const SceneSet without = make_scene_set(rig, planned(rig, std::nullopt));
     ASSERT_EQ(with.scenes.size(), without.scenes.size());
@@ -103,7 +94,7 @@ TEST(PovrayVeil, ChangesNothingInWaterThatDoesNotScatter) {
 
 // Whose frames the same folder keeps, whatever makes the veil.
 TEST(PovrayVeil, LeavesTheFramesOfTheDirectLightAsTheyAre) {
-    const Rig rig = in_water(kForward);
+    const Rig rig = with_particles(habcam(), kForward);
     PlanRequest request;
     request.wavelengths_nm = {450.0, 520.0, 600.0, 680.0};
     const SceneSet without = make_scene_set(rig, plan_render(rig, request));
@@ -133,7 +124,7 @@ TEST(PovrayVeil, HasWavelengthsEnoughForItsPaths) {
 
 // POV-Ray's samples of their shadows have no bound.
 TEST(PovrayVeil, HasNoPromiseWithObjects) {
-    Rig rig = in_water(kForward);
+    Rig rig = with_particles(habcam(), kForward);
     rig.objects.push_back({.name = "ball",
                            .shape = Sphere{.centre_m = {0.3, 0.2, 1.2}, .radius_m = 0.25},
                            .reflectance = Spectrum("grey", {300.0, 900.0}, {0.4, 0.4})});

@@ -5,9 +5,10 @@
 #include "support/random_rig.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
 #include "spectral/curve_loader.h"
+#include "support/has.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "tests/support/closed_form.h"
 #include "tests/support/simpson.h"
 
@@ -32,14 +33,6 @@ constexpr double kBetweenPaths = 0.02;
 // Of Simpson's rule with kPanels between knots, and of the grid that a fitter compares with.
 constexpr int kPanels = 4;
 constexpr double kQuadrature = 1e-8;
-
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
-Rig habcam() {
-    return rig_of("habcam.toml");
-}
 
 std::vector<double> wavelengths_of(const RenderPlan& plan) {
     std::vector<double> lambda_nm;
@@ -328,8 +321,8 @@ TEST(RenderPlan, KeepsItsErrorOnPixelsOfRandomRigs) {
 
 TEST(RenderPlan, IsTheSameEveryTime) {
     for (const char* scene : {"habcam.toml", "port.toml"}) {
-        const RenderPlan first = plan_render(rig_of(scene), {});
-        const RenderPlan second = plan_render(rig_of(scene), {});
+        const RenderPlan first = plan_render(scene_rig(scene), {});
+        const RenderPlan second = plan_render(scene_rig(scene), {});
         EXPECT_EQ(wavelengths_of(first), wavelengths_of(second)) << scene;
         for (std::size_t j = 0; j < first.wavelengths.size(); ++j) {
             EXPECT_EQ(first.wavelengths[j].weight, second.wavelengths[j].weight);
@@ -568,9 +561,8 @@ TEST(RenderPlan, NamesAFocalLengthThatNoLensHasWhereItCannotKeepATolerance) {
     request.tolerance = 4.95e-4;
     const std::string error = error_of(rig, request);
     EXPECT_TRUE(error.starts_with("tolerance: found 0.000495; allowed: ")) << error;
-    EXPECT_NE(error.find("camera.focal_length_mm: 0.6628 gives a field of view of 166.2 degrees"),
-              std::string::npos)
-        << error;
+    EXPECT_TRUE(
+        has(error, "camera.focal_length_mm: 0.6628 gives a field of view of 166.2 degrees"));
     rig.camera.focal_length_m = 12e-3;
     request.tolerance = 4e-4;
     EXPECT_TRUE(error_of(rig, request).starts_with("tolerance: found 0.0004; allowed: "));
@@ -579,7 +571,7 @@ TEST(RenderPlan, NamesAFocalLengthThatNoLensHasWhereItCannotKeepATolerance) {
 // --- Behind a port --------------------------------------------------------------------- --------
 
 TEST(RenderPlan, BehindAPortKeepsItsToleranceAndItsSharing) {
-    const Rig rig = rig_of("port.toml");
+    const Rig rig = scene_rig("port.toml");
     for (const double tolerance : {6e-4, 1e-3, 1e-2}) {
         PlanRequest request;
         request.tolerance = tolerance;
@@ -600,7 +592,7 @@ TEST(RenderPlan, BehindAPortKeepsItsToleranceAndItsSharing) {
 // With all of it, the frames' own error included, no pixel is off by more than the tolerance: of
 // HabCam behind its port, under one lamp close to the floor, and with a lamp's mirror image.
 TEST(RenderPlan, BehindAPortKeepsItsToleranceOnPixels) {
-    Rig low = rig_of("port.toml");
+    Rig low = scene_rig("port.toml");
     low.strobes.resize(1, low.strobes.front());
     low.strobes[0].position_m = {0.25, 0.3, 1.95};
     low.strobes[0].axis = Eigen::Vector3d::UnitZ();
@@ -614,7 +606,7 @@ TEST(RenderPlan, BehindAPortKeepsItsToleranceOnPixels) {
         Rig rig;
         double tolerance;
     };
-    for (const Case& each : {Case{"HabCam", rig_of("port.toml"), 6e-4},
+    for (const Case& each : {Case{"HabCam", scene_rig("port.toml"), 6e-4},
                              {"a low lamp", low, 1e-2},
                              {"a glossy floor", glossy, 2e-3},
                              {"a glossy floor", glossy, 1e-2}}) {
@@ -635,7 +627,7 @@ TEST(RenderPlan, BehindAPortKeepsItsToleranceOnPixels) {
 
 // Three wavelengths in one frame, each shifted by as much as 2 pixels: the promise knows.
 TEST(RenderPlan, KnowsWhatSharedFramesShift) {
-    const Rig rig = rig_of("port.toml");
+    const Rig rig = scene_rig("port.toml");
     PlanRequest request;
     request.wavelengths_nm = {480.0, 550.0, 620.0};
     const RenderPlan apart = plan_render(rig, request);
@@ -651,7 +643,7 @@ TEST(RenderPlan, KnowsWhatSharedFramesShift) {
 
 // Where sharing would break the tolerance, each wavelength has a frame of its own.
 TEST(RenderPlan, BehindAPortGivesUpSharingForTheTolerance) {
-    const Rig rig = rig_of("port.toml");
+    const Rig rig = scene_rig("port.toml");
     PlanRequest request;
     request.scene.pixel_shift = 1000.0;
     for (const double tolerance : {6e-4, 7e-4, 1e-3, 3e-3}) {

@@ -2,10 +2,11 @@
 #include "scene_gen/reweighting.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/curve_loader.h"
+#include "support/has.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "tests/support/closed_form.h"
 #include "tests/support/simpson.h"
 
@@ -31,14 +32,6 @@ constexpr double kBetweenPaths = 0.02;
 // Of Simpson's rule with kPanels between knots, and of the grid that a fitter compares with.
 constexpr int kPanels = 4;
 constexpr double kQuadrature = 1e-8;
-
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
-Rig habcam() {
-    return rig_of("habcam.toml");
-}
 
 Spectrum flash(const char* name) {
     return load_curve(name, CurveRole::LampSpectrum, {});
@@ -276,7 +269,7 @@ TEST(Reintegrate, CountsTheHighlight) {
 TEST(Reintegrate, OfTheSameRigGivesItsOwnImage) {
     constexpr double kConverged = 0.02;  // of the errors, which are small against the promise
     for (const char* scene : {"habcam.toml", "port.toml"}) {
-        const Rig rig = rig_of(scene);
+        const Rig rig = scene_rig(scene);
         const Manifest manifest = manifest_of(rig);
         const Manifest again = reintegrate(rig, manifest, kTolerance);
         EXPECT_NEAR(promise_of(again) / promise_of(manifest), 1.0, kConverged) << scene;
@@ -381,9 +374,7 @@ TEST(Reintegrate, NamesTheFramesThatItLacks) {
         const std::string start = "the frames give this rig's image to ";
         ASSERT_TRUE(message.starts_with(start)) << message;
         EXPECT_GT(std::stod(message.substr(start.size())), kTolerance) << message;
-        EXPECT_NE(message.find(" only; allowed: 0.001, the tolerance; it lacks "),
-                  std::string::npos)
-            << message;
+        EXPECT_TRUE(has(message, " only; allowed: 0.001, the tolerance; it lacks "));
         EXPECT_TRUE(message.ends_with(" nm in the changed rig's water and light")) << message;
 
         // With frames of these, it can.
@@ -448,8 +439,8 @@ TEST(Reintegrate, NamesWhatDiffers) {
             habcam(),
             [](Rig& r) { r.strobes[1].emitter = Emitter{.across_m = 0.0635, .along_m = 0.0302}; }),
         few_lamps);
-    const Shown port = shown(rig_of("port.toml"));
-    const Shown objects = shown(rig_of("objects.toml"));
+    const Shown port = shown(scene_rig("port.toml"));
+    const Shown objects = shown(scene_rig("objects.toml"));
     for (const Shown* each : {&dark, &emitter, &port, &objects}) {
         EXPECT_EQ(error_of(each->rig, each->frames), "nothing was said");
     }
@@ -577,7 +568,7 @@ void expect_promise_kept(const Rig& now,
 }
 
 TEST(Reintegrate, KeepsItsPromiseOnPixelsBehindAPort) {
-    const Rig shown = rig_of("port.toml");
+    const Rig shown = scene_rig("port.toml");
     PlanRequest request;
     request.wavelengths_nm = {420.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0};
     const Manifest manifest = manifest_of(shown, request);
@@ -588,7 +579,7 @@ TEST(Reintegrate, KeepsItsPromiseOnPixelsBehindAPort) {
 // Frames of wavelengths that the changed rig's range does not take in serve it all the same, and
 // have the rays of their own.
 TEST(Reintegrate, KeepsItsPromiseOnPixelsForANarrowerRangeBehindAPort) {
-    Rig shown = rig_of("port.toml");
+    Rig shown = scene_rig("port.toml");
     shown.camera.focal_length_m = 0.006;
     PlanRequest request;
     request.wavelengths_nm = {420.0, 480.0};

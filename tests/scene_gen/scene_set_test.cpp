@@ -2,7 +2,9 @@
 #include "scene_gen/scene_set.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
+#include "support/has.h"
+#include "support/refusal.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +17,7 @@ namespace aphotic::scene_set_test {
 namespace {
 
 Rig habcam_in(double multiple) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    Rig rig = habcam();
     rig.water.multiple = multiple;
     return rig;
 }
@@ -28,12 +30,8 @@ RenderPlan plan_in(double multiple) {
 }
 
 std::string refusal_of(double multiple, const RenderPlan& plan) {
-    try {
-        static_cast<void>(make_scene_set(habcam_in(multiple), plan));
-        return "none";
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    return aphotic::refusal_of(
+        [&] { static_cast<void>(make_scene_set(habcam_in(multiple), plan)); });
 }
 
 // POV-Ray's colours are floats, so no exposure lifts red out of such water.
@@ -42,17 +40,15 @@ TEST(SceneSet, RefusesLightThatFramesDoNotHoldAndThatCounts) {
     plan.wavelengths.back().weight = {1e57, 0.0, 0.0};
     const std::string refusal = refusal_of(100.0, plan);
     EXPECT_TRUE(refusal.starts_with("found light of at most ")) << refusal;
-    EXPECT_NE(refusal.find(
-                  " at 650 nm, fainter than frames can hold, which counts in R with a weight of "),
-              std::string::npos)
-        << refusal;
+    EXPECT_TRUE(has(
+        refusal, " at 650 nm, fainter than frames can hold, which counts in R with a weight of "));
 }
 
 // A plan gives it no weight and says what that costs.
 TEST(SceneSet, TakesEveryPlan) {
     for (const double multiple : {0.0, 1.0, 50.0, 60.0, 100.0, 230.0, 1e3}) {
         const RenderPlan plan = plan_in(multiple);
-        EXPECT_EQ(refusal_of(multiple, plan), "none") << multiple;
+        EXPECT_EQ(refusal_of(multiple, plan), kAccepted) << multiple;
         if (multiple < 50.0) continue;
         EXPECT_EQ(plan.wavelengths.back().weight[0], 0.0) << multiple;
         EXPECT_GT(plan.promise(), 1e-3) << multiple;
@@ -62,7 +58,7 @@ TEST(SceneSet, TakesEveryPlan) {
 // A black image is an answer.
 TEST(SceneSet, TakesWaterThatNoLightComesThrough) {
     for (const double multiple : {1e4, 1e6}) {
-        EXPECT_EQ(refusal_of(multiple, plan_in(multiple)), "none");
+        EXPECT_EQ(refusal_of(multiple, plan_in(multiple)), kAccepted);
     }
 }
 
@@ -85,17 +81,12 @@ std::vector<PlannedWavelength> green_and_red(int red_log2, double share = 1.0) {
 }
 
 std::string refusal_of(const std::vector<PlannedWavelength>& wavelengths) {
-    try {
-        require_light_that_counts(wavelengths, kFrameError);
-        return "none";
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    return aphotic::refusal_of([&] { require_light_that_counts(wavelengths, kFrameError); });
 }
 
 // 2^-114 is held as 2^-14, the last with all digits.
 TEST(LostLight, IsBelowTheLeastNormalHalfFloat) {
-    EXPECT_EQ(refusal_of(green_and_red(-114)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-114)), kAccepted);
     EXPECT_EQ(
         refusal_of(green_and_red(-115)),
         "found light of at most 2.4e-35 at 650 nm, fainter than frames can hold, which counts in R "
@@ -103,24 +94,24 @@ TEST(LostLight, IsBelowTheLeastNormalHalfFloat) {
 }
 
 TEST(LostLight, IsNoMatterWhereItCountsForNothing) {
-    EXPECT_EQ(refusal_of(green_and_red(-200, 0.9 * kFrameError)), "none");
-    EXPECT_NE(refusal_of(green_and_red(-200, 1.1 * kFrameError)), "none");
-    EXPECT_EQ(refusal_of(green_and_red(-200, 0.0)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.9 * kFrameError)), kAccepted);
+    EXPECT_NE(refusal_of(green_and_red(-200, 1.1 * kFrameError)), kAccepted);
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.0)), kAccepted);
 }
 
 // A sign makes no difference: what is subtracted and lost is lost as well.
 TEST(LostLight, CountsByTheSizeOfItsWeight) {
     std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
     wavelengths[1].weight[0] *= -1.0;
-    EXPECT_NE(refusal_of(wavelengths), "none");
+    EXPECT_NE(refusal_of(wavelengths), kAccepted);
 }
 
 TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
     std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
     wavelengths[0].weight = {};
-    EXPECT_EQ(refusal_of(wavelengths), "none");
+    EXPECT_EQ(refusal_of(wavelengths), kAccepted);
     for (PlannedWavelength& w : wavelengths) w.radiance_bound = 0.0;
-    EXPECT_EQ(refusal_of(wavelengths), "none");
+    EXPECT_EQ(refusal_of(wavelengths), kAccepted);
 }
 
 // POV-Ray looks a ray up by its place in the image, and not left of a tenth before it.

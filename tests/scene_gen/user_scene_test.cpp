@@ -2,7 +2,7 @@
 #include "scene_gen/user_scene.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
+#include "support/scene_rig.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,6 @@
 
 namespace aphotic::user_scene_test {
 namespace {
-
-Rig habcam() {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-}
 
 TEST(UserScene, APathIsToldByWhatTwoLossesLeave) {
     constexpr double kRounding = 1e-14;

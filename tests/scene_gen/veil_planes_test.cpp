@@ -8,10 +8,11 @@
 #include "image/exr.h"
 #include "light/veil.h"
 #include "light/veil_map.h"
-#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
+#include "support/veil_rig.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -47,20 +48,6 @@ namespace {
 
 // What a plane is off by, of the veil alone: nothing is known of the floor when it is made.
 constexpr double kOfVeil = 1e-4;
-
-Spectrum line(const std::string& name, double at_400_nm, double at_700_nm) {
-    return {name, {300.0, 400.0, 700.0, 900.0}, {at_400_nm, at_400_nm, at_700_nm, at_700_nm}};
-}
-
-Rig coast(int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    rig.water.absorption_per_m = line("absorption", 0.3, 0.65);
-    rig.water.scatterers = {{line("particles", 0.28, 0.18), fournier_forand(0.0183)}};
-    return rig;
-}
 
 // Frames of three wavelengths and of one.
 Manifest manifest_of(const Rig& rig) {
@@ -151,13 +138,8 @@ TEST(VeilPlanes, WithoutFramesOnlyTheBareFloorHasThem) {
     rig.objects.push_back({.name = "rock",
                            .shape = Sphere{.centre_m = {0.0, 0.0, 1.8}, .radius_m = 0.1},
                            .reflectance = rig.seafloor.reflectance});
-    try {
-        require_bare_floor_under_veil(rig);
-        FAIL() << "allowed";
-    } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  "found the object 'rock'; allowed with water that scatters: the bare floor");
-    }
+    EXPECT_EQ(refusal_of([&] { require_bare_floor_under_veil(rig); }),
+              "found the object 'rock'; allowed with water that scatters: the bare floor");
 }
 
 // A plan's promise holds what the planes are off by, and keeps the tolerance all the same.

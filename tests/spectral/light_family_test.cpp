@@ -2,7 +2,8 @@
 #include "spectral/light_family.h"
 
 #include "spectral/curve_loader.h"
-#include "support/flat.h"
+#include "support/dice.h"
+#include "support/light_family.h"
 #include "support/simpson.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -21,30 +21,6 @@ constexpr WavelengthRange kRange{400.0, 700.0};
 constexpr double kWidth_nm = 300.0;
 // What some thousand additions of numbers of one sign may lose.
 constexpr double kRounding = 1e-13;
-
-// first at 400 nm, last at 700 nm.
-Spectrum line(double first, double last) {
-    return {"line", {400.0, 700.0}, {first, last}};
-}
-
-Sensor flat_sensor(ResponseKind kind = ResponseKind::Energy) {
-    return {{flat(1.0), flat(2.0), flat(3.0)}, kind};
-}
-
-Water clear_water() {
-    return {.absorption_per_m = flat(1.0), .multiple = 0.0};
-}
-
-LightFamily family_of(std::vector<std::vector<Spectrum>> sources,
-                      Water water,
-                      double shortest_path_m,
-                      double longest_path_m) {
-    return {.sources = std::move(sources),
-            .water = std::move(water),
-            .shortest_path_m = shortest_path_m,
-            .longest_path_m = longest_path_m,
-            .tilt = {}};
-}
 
 // The signal that a rule gives to a source after a path.
 double applied(const std::vector<WeightedWavelength>& rule,
@@ -282,12 +258,9 @@ TEST(ReferenceGrid, BearsAFamilyWithoutSources) {
 
 // --- The reference grid against brute force ------------------------------------------------
 
-class Dice {
+class Dice : public aphotic::Dice {
   public:
-    explicit Dice(unsigned seed) : engine_(seed) {}
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine_);
-    }
+    using aphotic::Dice::Dice;
     Spectrum table(double most) {
         std::vector<double> lambda_nm{400.0 - between(0.0, 5.0)};
         std::vector<double> value{between(0.0, most)};
@@ -298,9 +271,6 @@ class Dice {
         }
         return {"random", lambda_nm, value};
     }
-
-  private:
-    std::mt19937_64 engine_;
 };
 
 TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/minimax.h"
 
+#include "support/dice.h"
+
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -9,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <vector>
 
 namespace aphotic::minimax_test {
@@ -29,12 +30,9 @@ constexpr double kRidge = 1e-12;
 constexpr int kEnough = 1000;
 constexpr double kConverged = 2e-3;
 
-class Dice {
+class Dice : public aphotic::Dice {
   public:
-    explicit Dice(unsigned seed) : engine_(seed) {}
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine_);
-    }
+    using aphotic::Dice::Dice;
     MatrixXd matrix(Index rows, Index columns) {
         MatrixXd m(rows, columns);
         for (Index j = 0; j < columns; ++j) {
@@ -48,9 +46,6 @@ class Dice {
         for (Index i = 0; i < rows; ++i) u(i) = between(0.0, 1.0);
         return u / u.sum();
     }
-
-  private:
-    std::mt19937_64 engine_;
 };
 
 double largest_residual(const MatrixXd& a, const VectorXd& b, const VectorXd& x) {

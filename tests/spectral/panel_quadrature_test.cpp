@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/panel_quadrature.h"
 
+#include "support/light_family.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,11 +18,6 @@ constexpr double kWidth_nm = 300.0;
 constexpr double kPanelError = 1e-10;
 // What some thousand additions of numbers of one sign may lose.
 constexpr double kRounding = 1e-13;
-
-// first at 400 nm, last at 700 nm.
-Spectrum line(double first, double last) {
-    return {"line", {400.0, 700.0}, {first, last}};
-}
 
 Water water_of(double first_per_m, double last_per_m) {
     return {.absorption_per_m = line(first_per_m, last_per_m)};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/quadrature_certificate.h"
 
+#include "support/light_family.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,11 +19,6 @@ constexpr double kPanelError = 1e-10;  // of spectral/panel_quadrature.h
 
 Spectrum flat(double value) {
     return {"flat", {400.0, 700.0}, {value, value}};
-}
-
-// first at 400 nm, last at 700 nm.
-Spectrum line(double first, double last) {
-    return {"line", {400.0, 700.0}, {first, last}};
 }
 
 // 1 from 400 nm to the edge, then nothing.

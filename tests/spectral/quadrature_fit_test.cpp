@@ -2,7 +2,7 @@
 #include "spectral/quadrature_fit.h"
 
 #include "spectral/curve_loader.h"
-#include "support/flat.h"
+#include "support/light_family.h"
 
 #include <gtest/gtest.h>
 
@@ -26,68 +26,12 @@ constexpr double kGridError = 2e-9;
 // Lawson's iteration ends this near the least error there is.
 constexpr double kConverged = 0.01;
 
-// first at 400 nm, last at 700 nm.
-Spectrum line(double first, double last) {
-    return {"line", {400.0, 700.0}, {first, last}};
-}
-
 Spectrum table(std::vector<double> lambda_nm, std::vector<double> values) {
     return {"table", std::move(lambda_nm), std::move(values)};
 }
 
-Spectrum times(const Spectrum& curve, double factor) {
-    std::vector<double> values(curve.values().begin(), curve.values().end());
-    for (double& value : values) value *= factor;
-    return {curve.name(), {curve.lambda_nm().begin(), curve.lambda_nm().end()}, values};
-}
-
-Sensor flat_sensor(ResponseKind kind = ResponseKind::Energy) {
-    return {{flat(1.0), flat(2.0), flat(3.0)}, kind};
-}
-
-Water clear_water() {
-    return {.absorption_per_m = flat(1.0), .multiple = 0.0};
-}
-
-Water pure_water() {
-    return {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})};
-}
-
-LightFamily family_of(std::vector<std::vector<Spectrum>> sources,
-                      Water water,
-                      double shortest_path_m,
-                      double longest_path_m) {
-    return {.sources = std::move(sources),
-            .water = std::move(water),
-            .shortest_path_m = shortest_path_m,
-            .longest_path_m = longest_path_m,
-            .tilt = {}};
-}
-
-std::vector<Spectrum> lit_by_the_flash(const char* material) {
-    return {load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
-            load_curve(material, CurveRole::Reflectance, {})};
-}
-
 LightFamily sea_floor(double shortest_path_m, double longest_path_m) {
-    return family_of({lit_by_the_flash("sand"), lit_by_the_flash("brown-algae")},
-                     pure_water(),
-                     shortest_path_m,
-                     longest_path_m);
-}
-
-std::vector<FrameLight> frames_at(const QuadratureFitter& fitter,
-                                  const std::vector<double>& lambda_nm) {
-    std::vector<FrameLight> frames;
-    for (const double nm : lambda_nm) frames.push_back(fitter.frame_at(nm));
-    return frames;
-}
-
-std::vector<FrameLight> frames_of(const QuadratureFitter& fitter,
-                                  const std::vector<WeightedWavelength>& rule) {
-    std::vector<FrameLight> frames;
-    for (const WeightedWavelength& w : rule) frames.push_back(fitter.frame_at(w.lambda_nm));
-    return frames;
+    return aphotic::sea_floor({"sand", "brown-algae"}, shortest_path_m, longest_path_m);
 }
 
 std::array<RuleQuality, kChannels> judged(const Sensor& sensor,

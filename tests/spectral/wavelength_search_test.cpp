@@ -4,7 +4,8 @@
 #include "base/error.h"
 #include "spectral/bands.h"
 #include "spectral/curve_loader.h"
-#include "support/flat.h"
+#include "support/dice.h"
+#include "support/light_family.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <set>
 #include <string>
 #include <utility>
@@ -29,12 +29,6 @@ constexpr double kGridError = 1e-9 + 2e-9;
 // Wavelengths closer together than this could not be told apart by the names of their channels.
 constexpr double kLeastDistance_nm = 0.01;
 
-Spectrum times(const Spectrum& curve, double factor) {
-    std::vector<double> values(curve.values().begin(), curve.values().end());
-    for (double& value : values) value *= factor;
-    return {curve.name(), {curve.lambda_nm().begin(), curve.lambda_nm().end()}, values};
-}
-
 // Nothing but a triangle of 0.1 nm.
 Spectrum narrow_line(double nm) {
     return {"line", {300.0, nm - 0.05, nm, nm + 0.05, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0}};
@@ -44,43 +38,8 @@ Sensor camera() {
     return builtin_sensor("nikon-d5100");
 }
 
-std::vector<Spectrum> lit_by_the_flash(const std::string& material) {
-    return {load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
-            load_curve(material, CurveRole::Reflectance, {})};
-}
-
-LightFamily sea_floor(const std::vector<std::string>& materials,
-                      double shortest_path_m,
-                      double longest_path_m) {
-    LightFamily family{
-        .sources = {},
-        .water = {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
-        .shortest_path_m = shortest_path_m,
-        .longest_path_m = longest_path_m,
-        .tilt = {}};
-    for (const std::string& material : materials) {
-        family.sources.push_back(lit_by_the_flash(material));
-    }
-    return family;
-}
-
 const std::vector<std::string> kSand{"sand"};
 const std::vector<std::string> kAll{"sand", "green-algae", "brown-algae", "red-algae"};
-
-std::vector<FrameLight> frames_at(const QuadratureFitter& fitter,
-                                  const std::vector<double>& lambda_nm) {
-    std::vector<FrameLight> frames;
-    for (const double nm : lambda_nm) frames.push_back(fitter.frame_at(nm));
-    return frames;
-}
-
-std::vector<FrameLight> frames_of(const QuadratureFitter& fitter, const FittedRule& rule) {
-    std::vector<FrameLight> frames;
-    for (const WeightedWavelength& w : rule.wavelengths) {
-        frames.push_back(fitter.frame_at(w.lambda_nm));
-    }
-    return frames;
-}
 
 FittedRule fitted_at(const QuadratureFitter& fitter, const std::vector<double>& lambda_nm) {
     return fitter.fit(frames_at(fitter, lambda_nm), kFrameError);
@@ -228,12 +187,9 @@ class Simpson {
     double least_K_per_m_ = std::numeric_limits<double>::infinity();
 };
 
-class Dice {
+class Dice : public aphotic::Dice {
   public:
-    explicit Dice(unsigned seed) : engine_(seed) {}
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine_);
-    }
+    using aphotic::Dice::Dice;
     Spectrum curve(double least, double most) {
         std::vector<double> lambda_nm;
         std::vector<double> value;
@@ -267,9 +223,6 @@ class Dice {
                 .tilt = family.tilt ? between(-1.0, 1.0) : 0.0,
                 .path_m = between(family.shortest_path_m, family.longest_path_m)};
     }
-
-  private:
-    std::mt19937_64 engine_;
 };
 
 // Random pixels, a sum of members each with factors that are not negative, never err by more than
@@ -529,7 +482,8 @@ TEST(Planner, FindsALineOfATenthOfANanometre) {
         for (const WeightedWavelength& w : rule.wavelengths) {
             EXPECT_NEAR(w.lambda_nm, line_nm, kHalfLine_nm) << what;
         }
-        expect_promise_kept(camera(), family, rule, frames_of(fitter, rule), dice, what);
+        expect_promise_kept(
+            camera(), family, rule, frames_of(fitter, rule.wavelengths), dice, what);
     }
 }
 
@@ -601,7 +555,8 @@ TEST(Planner, KeepsItsPromiseInBlackWater) {
         const std::string what = std::to_string(multiple) + " of the water";
         expect_sound(rule, what);
         EXPECT_LE(rule.promise(kFrameError), 2e-3) << what;
-        expect_promise_kept(camera(), family, rule, frames_of(fitter, rule), dice, what);
+        expect_promise_kept(
+            camera(), family, rule, frames_of(fitter, rule.wavelengths), dice, what);
     }
 }
 
@@ -613,7 +568,8 @@ TEST(Planner, KeepsItsPromiseFromNoPathAtAll) {
     const FittedRule rule = plan_wavelengths(fitter, kRange, {.tolerance = 1e-2});
     expect_sound(rule, "from 0 m");
     EXPECT_LE(rule.promise(kFrameError), 1e-2);
-    expect_promise_kept(camera(), family, rule, frames_of(fitter, rule), dice, "from 0 m");
+    expect_promise_kept(
+        camera(), family, rule, frames_of(fitter, rule.wavelengths), dice, "from 0 m");
 }
 
 TEST(Planner, KeepsItsPromiseBehindAPort) {
@@ -624,7 +580,7 @@ TEST(Planner, KeepsItsPromiseBehindAPort) {
     const FittedRule rule = plan_wavelengths(fitter, kRange, {.tolerance = 5e-3});
     expect_sound(rule, "port");
     EXPECT_LE(rule.promise(kFrameError), 5e-3);
-    expect_promise_kept(camera(), family, rule, frames_of(fitter, rule), dice, "port");
+    expect_promise_kept(camera(), family, rule, frames_of(fitter, rule.wavelengths), dice, "port");
 }
 
 // --- Tolerances that nothing keeps --------------------------------------------------------------
@@ -744,14 +700,15 @@ TEST_P(PlannerOfAnyLight, KeepsItsPromiseToAnyPixel) {
         "family " + std::to_string(GetParam()) + ", " + std::to_string(count) + " wavelengths";
     expect_sound(best, what);
     EXPECT_EQ(best.wavelengths.size(), static_cast<std::size_t>(count)) << what;
-    expect_promise_kept(sensor, family, best, frames_of(fitter, best), dice, what, kRough);
+    expect_promise_kept(
+        sensor, family, best, frames_of(fitter, best.wavelengths), dice, what, kRough);
 
     constexpr double kTolerance = 0.02;
     const FittedRule plan = plan_wavelengths(fitter, kRange, {.tolerance = kTolerance});
     expect_sound(plan, what + ", plan");
     EXPECT_LE(plan.promise(kFrameError), kTolerance) << what;
     expect_promise_kept(
-        sensor, family, plan, frames_of(fitter, plan), dice, what + ", plan", kRough);
+        sensor, family, plan, frames_of(fitter, plan.wavelengths), dice, what + ", plan", kRough);
 }
 
 INSTANTIATE_TEST_SUITE_P(Random, PlannerOfAnyLight, testing::Range(0U, 30U));

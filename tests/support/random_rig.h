@@ -24,6 +24,7 @@
 #include "support/box_mesh.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"
+#include "support/scene_rig.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -375,14 +376,6 @@ inline Rig random_nasty_rig(std::uint64_t seed) {
         strobe.spectrum = lamps[dice.index_in(lamps)];
         strobe.power = dice.over_octaves(1e-15, 1e15);
     }
-    return rig;
-}
-
-// The same view in so many pixels.
-inline Rig with_pixels(Rig rig, int width_px, int height_px) {
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
     return rig;
 }
 

@@ -7,12 +7,12 @@
 #include "base/atomic_file.h"
 #include "image/exr.h"
 #include "plugin/render.h"
-#include "rig/file/rig_reader.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/include_library.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/curve_loader.h"
 #include "support/closed_form.h"
+#include "support/scene_rig.h"
 #include "support/scene_text.h"
 #include "support/temp_folder.h"
 
@@ -37,11 +37,7 @@ inline constexpr double kNearEdgeRad = 1e-9;
 
 // scenes/habcam.toml, with fewer and larger pixels over the same field of view.
 inline Rig small_habcam(int width_px = 68, int height_px = 51) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
-    return rig;
+    return habcam(width_px, height_px);
 }
 
 inline SceneSet scenes_of(const Rig& rig,

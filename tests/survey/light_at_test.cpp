@@ -6,7 +6,7 @@
 #include "survey/light_at.h"
 #include "support/scene_text.h"
 
-#include "rig/file/rig_reader.h"
+#include "support/scene_rig.h"
 #include "survey/correction.h"
 
 #include <gtest/gtest.h>
@@ -24,10 +24,7 @@ constexpr double kNoInterpolation = 0.0;
 constexpr double kRounding = 4.0 * 0x1p-24;
 
 Rig coast(const std::string& name) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + name + ".toml");
-    rig.camera.pixel_pitch_m *= rig.camera.width_px / 340.0;
-    rig.camera.width_px = 340;
-    rig.camera.height_px = 220;
+    Rig rig = scene_rig(name + ".toml", 340, 220);
     const auto line = [](const std::string& curve, double blue, double red) {
         return Spectrum(curve, {300.0, 400.0, 700.0, 900.0}, {blue, blue, red, red});
     };

@@ -5,9 +5,10 @@
 #include "support/exact_light.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
 #include "support/closed_form.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
+#include "support/veil_rig.h"
 
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -27,14 +28,6 @@ using Fifty = boost::multiprecision::cpp_bin_float_50;
 constexpr long double kLongRounding = 1e-15L;
 // The same in doubles, which the closed form of the tests uses.
 constexpr double kRounding = 1e-13;
-
-Rig habcam() {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= 1360.0 / 5;
-    rig.camera.width_px = 5;
-    rig.camera.height_px = 4;
-    return rig;
-}
 
 // The largest relative difference of long double from fifty digits, over pixels and channels.
 long double worst_of_long_double(const Rig& rig, double lambda_nm) {
@@ -59,7 +52,7 @@ long double worst_of_long_double(const Rig& rig, double lambda_nm) {
 }
 
 TEST(ExactLight, OnTheAxisIsTheInverseSquareAndTwoLegsOfWater) {
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.sled = {.altitude_m = 3.0, .pitch_rad = 0.0, .roll_rad = 0.0};
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
     rig.strobes[0].position_m.setZero();
@@ -76,7 +69,7 @@ TEST(ExactLight, OnTheAxisIsTheInverseSquareAndTwoLegsOfWater) {
 
 // Everything else at once, against the formula as the tests write it.
 TEST(ExactLight, AgreesWithTheClosedFormOffTheAxisAndBehindAPort) {
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.sled.roll_rad = -0.2;
     rig.seafloor.phong = 0.4;
     rig.strobes[1].beam.cones[0].exponent = 7.5;
@@ -103,7 +96,7 @@ TEST(ExactLight, AgreesWithTheClosedFormOffTheAxisAndBehindAPort) {
 //   int exp(-K l) dlambda = (exp(-K_1 l) - exp(-K_2 l)) / (b l)
 TEST(ExactLight, IntegratesAStraightAbsorptionInClosedForm) {
     const auto flat = [](double value) { return Spectrum("flat", {500.0, 600.0}, {value, value}); };
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.sled = {.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0};
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
     rig.strobes[0].position_m.setZero();
@@ -129,11 +122,11 @@ TEST(ExactLight, IntegratesAStraightAbsorptionInClosedForm) {
 }
 
 TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfHabCam) {
-    EXPECT_LT(worst_of_long_double(habcam(), 550.0), kLongRounding);
+    EXPECT_LT(worst_of_long_double(habcam(5, 4), 550.0), kLongRounding);
 }
 
 TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfSoftEdges) {
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     for (Strobe& strobe : rig.strobes) {
         for (Cone& cone : strobe.beam.cones) {
             cone.edge_rad = 0.7 * cone.half_angle_rad;
@@ -144,7 +137,7 @@ TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfSoftEdges) {
 }
 
 TEST(ExactLight, LongDoubleHoldsWhereDoublesEnd) {
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     for (const double K_per_m : {175.0, 1e3}) {  // optical depths of 700 and 4000
         rig.water.uniform_loss_per_m = K_per_m;
         EXPECT_LT(worst_of_long_double(rig, 550.0), kLongRounding) << K_per_m;
@@ -152,7 +145,7 @@ TEST(ExactLight, LongDoubleHoldsWhereDoublesEnd) {
 }
 
 TEST(ExactLight, LongDoubleHoldsTowardsTheHorizonAndForGrazingLight) {
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.sled = {.altitude_m = 1.0, .pitch_rad = 89.9 * std::numbers::pi / 180.0, .roll_rad = 0.0};
     rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
     rig.strobes[0].position_m = {0.0, 1000.0, 0.0};
@@ -163,8 +156,7 @@ TEST(ExactLight, LongDoubleHoldsTowardsTheHorizonAndForGrazingLight) {
 
 // Of a black floor: nothing but the veil along the camera's axis.
 Rig in_scattering_water(const Eigen::Vector3d& lamp_m, double half_angle_rad, double b_per_m) {
-    const auto flat = [](double value) { return Spectrum("flat", {300.0, 900.0}, {value, value}); };
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.sled = {.altitude_m = 2.5, .pitch_rad = 0.0, .roll_rad = 0.0};
     rig.seafloor.reflectance = flat(0.0);
     rig.water.absorption_per_m = flat(0.0);
@@ -173,9 +165,7 @@ Rig in_scattering_water(const Eigen::Vector3d& lamp_m, double half_angle_rad, do
     rig.strobes[0].position_m = lamp_m;
     rig.strobes[0].axis = Eigen::Vector3d(-lamp_m.x(), -lamp_m.y(), 0.0).normalized();
     rig.strobes[0].spectrum = flat(1.0);
-    rig.strobes[0].beam = {.name = "even", .weights = ConeWeights::Literal, .cones = {}};
-    rig.strobes[0].beam.cones = {
-        {.part = "even", .half_angle_rad = half_angle_rad, .weight = 1.0, .exponent = 0.0}};
+    rig.strobes[0].beam = even_beam(half_angle_rad);
     return rig;
 }
 
@@ -227,7 +217,7 @@ TEST(ExactLight, TheVeilInLossyWaterIsSunsFunction) {
 // A phase function is a double's, of an angle that is one.
 TEST(ExactLight, LongDoubleIsGoodForThirteenDigitsOfTheVeil) {
     constexpr long double kOfPhase = 1e-13L;
-    Rig rig = habcam();
+    Rig rig = habcam(5, 4);
     rig.camera.range = {.first_nm = 549.0, .last_nm = 551.0};
     const Spectrum b("b", {300.0, 900.0}, {0.4, 0.2});
     rig.water.scatterers = {{b, {.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}}},
@@ -241,14 +231,14 @@ TEST(ExactLight, RefusesWhatItDoesNotKnow) {
         return refusal_of([&] { return ExactLight<long double>(rig); });
     };
     const auto expect_refused = [&](const std::string& what, const auto& change) {
-        Rig rig = habcam();
+        Rig rig = habcam(5, 4);
         EXPECT_EQ(error_of(rig), kAccepted);
         change(rig);
         EXPECT_TRUE(error_of(rig).starts_with("found " + what + "; allowed in the exact light"))
             << error_of(rig);
     };
     const PortWindow flat{.distance_m = 0.05, .thickness_m = 0.01, .glass = builtin_glass("bk7")};
-    Rig behind_a_port = habcam();
+    Rig behind_a_port = habcam(5, 4);
     behind_a_port.camera.port = flat;
     EXPECT_EQ(error_of(behind_a_port), kAccepted);
     expect_refused("a dome", [&](Rig& rig) {

@@ -2,7 +2,7 @@
 #include "validation/full_spectrum.h"
 
 #include "spectral/curve_loader.h"
-#include "support/flat.h"
+#include "support/light_family.h"
 
 #include <gtest/gtest.h>
 
@@ -17,14 +17,6 @@ namespace {
 constexpr WavelengthRange kRange{400.0, 700.0};
 constexpr double kWidth_nm = 300.0;
 constexpr double kError = 1e-8;
-
-Spectrum line(double first, double last) {
-    return {"line", {400.0, 700.0}, {first, last}};
-}
-
-Sensor flat_sensor() {
-    return {{flat(1.0), flat(2.0), flat(3.0)}, ResponseKind::Energy};
-}
 
 LightFamily lights_of(Spectrum source, Water water, double shortest_m, double longest_m) {
     return {.sources = {{std::move(source)}},

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/model_check.h"
 
-#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/flat.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kPaths = 100;
 
 Rig led_rig(double a, double b) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");
+    Rig rig = scene_rig("habcam-led.toml");
     rig.water.absorption_per_m = flat(a);
     rig.water.scatterers = {{flat(b), builtin_phase("petzold-coast")}};
     return rig;

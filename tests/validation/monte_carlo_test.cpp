@@ -5,11 +5,11 @@
 #include "validation/monte_carlo.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/dice.h"
 #include "support/effort.h"
 #include "support/flat.h"
+#include "support/veil_rig.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -35,13 +35,9 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // A mean is that far off once in 16,000 times; the seeds are fixed.
 constexpr double kStandardErrors = 4.0;
 
-PhaseFunction henyey_greenstein(double g) {
-    return {.name = "hg", .kind = HenyeyGreenstein{.g = g}};
-}
-
 // Two half spaces of even light make a lamp that shines alike everywhere, at intensity 1/(4 pi).
 Rig even_lamp(double a, double b, PhaseFunction phase) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    Rig rig = habcam();
     Beam beam{.name = "even", .weights = ConeWeights::Literal, .cones = {}};
     beam.cones = {
         {.part = "half", .half_angle_rad = 0.5 * pi, .weight = 0.25 / pi, .exponent = 0.0}};
@@ -201,7 +197,7 @@ TEST(MonteCarlo, SpreadsLightAsFarAsTheMeanCosineSays) {
 
 // Of one turn at most, without loss by it: the reference's quadrature takes K for c.
 TEST(MonteCarlo, OfTheFirstOrderIsTheQuadratures) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    Rig rig = habcam();
     constexpr double kThin = 1e-6;  // [1/m], beside which the loss by turning is nothing
     rig.water = {.absorption_per_m = flat(0.2),
                  .scatterers = {{flat(kThin), builtin_phase("petzold")}}};
@@ -236,7 +232,7 @@ TEST(MonteCarlo, IsTheSameToTheBitForASeed) {
 
 // Halving what is followed changes what is found by less than its error.
 TEST(MonteCarlo, DoesNotHangOnTheLeastTurn) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");
+    Rig rig = scene_rig("habcam-led.toml");
     rig.water.scatterers = {{flat(0.2), builtin_phase("petzold-coast")}};
     const Tracer tracer(rig, {.signals = false, .planes_nm = {kNm}});
     const auto ray = tracer.ray(968.0, 608.0, kNm);

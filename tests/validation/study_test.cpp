@@ -6,6 +6,7 @@
 #include "rig/file/rig_reader.h"
 #include "support/page.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"
 
@@ -29,12 +30,8 @@ using Json = nlohmann::json;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Rig rig_of(const std::string& scene) {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
-}
-
 Rig rig_of_size(int width_px, int height_px) {
-    Rig rig = rig_of("habcam.toml");
+    Rig rig = habcam();
     rig.camera.width_px = width_px;
     rig.camera.height_px = height_px;
     return rig;
@@ -92,7 +89,7 @@ TEST(QuickRig, KeepsTheFieldOfViewOfEveryScene) {
 }
 
 TEST(QuickRig, OfASmallImageIsTheRigItself) {
-    const Rig rig = rig_of("one-lamp.toml");
+    const Rig rig = scene_rig("one-lamp.toml");
     const Rig quick = quick_rig(rig);
     EXPECT_EQ(quick.camera.width_px, rig.camera.width_px);
     EXPECT_EQ(quick.camera.height_px, rig.camera.height_px);

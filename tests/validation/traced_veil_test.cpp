@@ -4,10 +4,10 @@
 #include "validation/traced_veil.h"
 
 #include "light/veil.h"
-#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/flat.h"
 #include "support/random_beam.h"
+#include "support/veil_rig.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -34,29 +34,6 @@ constexpr double kOfClosedForms = 1e-10;
 // nodes take four times their points: with their own they are off by up to 6e-6 here.
 constexpr double kOfTwoQuadratures = 1e-6;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-Beam even(double half_angle_rad = 0.5 * pi) {
-    Beam beam{.name = "even", .weights = ConeWeights::Literal, .cones = {}};
-    beam.cones = {{.part = "even", .half_angle_rad = half_angle_rad, .weight = 1.0, .exponent = 0}};
-    return beam;
-}
-
-PhaseFunction henyey_greenstein(double g) {
-    return {.name = "hg", .kind = HenyeyGreenstein{.g = g}};
-}
-
-Rig one_lamp(const Vector3d& position_m, const Vector3d& axis, Beam beam, PhaseFunction phase) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
-    rig.strobes[0].position_m = position_m;
-    rig.strobes[0].axis = axis.normalized();
-    rig.strobes[0].beam = std::move(beam);
-    rig.strobes[0].spectrum = flat(1.0);
-    rig.strobes[0].power = 1.0;
-    rig.water.absorption_per_m = flat(0.2);
-    rig.water.scatterers = {{flat(0.3), std::move(phase)}};
-    return rig;
-}
 
 VeilRay down(double length_m) {
     return {Vector3d::Zero(), Vector3d::UnitZ(), length_m};
@@ -96,7 +73,7 @@ TEST(TracedVeil, IsThatOfTheRigsOwnNodes) {
 
 // What the pixel sees of a black floor is the veil before it, and of the sky the whole.
 TEST(TracedVeil, IsInTheTracersPixels) {
-    Rig rig = one_lamp({0.3, 0.4, 0.0}, Vector3d::UnitZ(), even(0.6), henyey_greenstein(0.8));
+    Rig rig = one_lamp({0.3, 0.4, 0.0}, Vector3d::UnitZ(), even_beam(0.6), henyey_greenstein(0.8));
     rig.seafloor.reflectance = flat(0.0);
     rig.seafloor.phong = 0.0;
     rig.camera.width_px = 3;
@@ -117,7 +94,8 @@ TEST(TracedVeil, IsInTheTracersPixels) {
 TEST(TracedVeil, HoldsTheSpectralErrorBesideADome) {
     constexpr unsigned kPoints = 30;
     using Gauss = boost::math::quadrature::gauss<double, kPoints>;
-    Rig rig = one_lamp({0.18, 0.0, 0.02}, Vector3d(-0.2, 0.0, 1.0), even(), henyey_greenstein(0.0));
+    Rig rig =
+        one_lamp({0.18, 0.0, 0.02}, Vector3d(-0.2, 0.0, 1.0), even_beam(), henyey_greenstein(0.0));
     rig.water.absorption_per_m = {"steep", {300.0, 540.0, 560.0, 900.0}, {0.2, 0.2, 200.0, 200.0}};
     rig.camera.range = {.first_nm = 535.0, .last_nm = 565.0};
     rig.camera.width_px = 3;

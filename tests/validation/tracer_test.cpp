@@ -6,13 +6,14 @@
 #include "validation/tracer.h"
 
 #include "base/error.h"
-#include "rig/file/rig_reader.h"
 #include "scene_gen/light_paths.h"
 #include "spectral/curve_loader.h"
 #include "support/cast_ray.h"
 #include "support/closed_form.h"
 #include "support/flat.h"
+#include "support/random_rig.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "support/simpson.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,15 +85,6 @@ Object object_of(const Shape& shape, double reflectance = 1.0) {
 
 Rig with_loss(Rig rig, double K_per_m) {
     rig.water.uniform_loss_per_m = K_per_m;
-    return rig;
-}
-
-// scenes/habcam.toml, with fewer and larger pixels over the same field of view.
-Rig habcam(int width_px, int height_px, const std::string& scene = "habcam") {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
     return rig;
 }
 
@@ -323,7 +314,7 @@ TEST(TracerEmitter, OfNoSizeIsAPoint) {
 // itself wrong by two fifths of the error.
 TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
     for (const auto& [phong, phong_size] : {std::pair{0.0, 40.0}, {0.5, 300.0}, {3.0, 2000.0}}) {
-        Rig rig = habcam(7, 5, "habcam-emitters");
+        Rig rig = scene_rig("habcam-emitters.toml", 7, 5);
         rig.strobes = {rig.strobes[3]};
         rig.strobes[0].beam = lambertian();
         rig.sled.roll_rad = 12.0 * kDegree;
@@ -345,7 +336,7 @@ TEST(TracerEmitter, HoldsItsStatedErrorInWaterOfAnyAttenuation) {
     constexpr double kFinerGrid = 1.0 / 16.0;
     for (const bool has_object : {false, true}) {
         for (const double K_per_m : {0.0, 2.0, 5.0, 10.0}) {
-            Rig rig = with_loss(habcam(7, 5, "habcam-emitters"), K_per_m);
+            Rig rig = with_loss(scene_rig("habcam-emitters.toml", 7, 5), K_per_m);
             rig.water.multiple = 0.0;
             rig.strobes = {rig.strobes[3]};
             rig.strobes[0].beam = lambertian();
@@ -380,7 +371,7 @@ TEST(TracerEmitter, HoldsItsStatedErrorInWaterOfAnyAttenuation) {
 // for no more lamps than what is seen.
 TEST(TracerEmitter, CountsAWavelengthByItsShareOfTheSignal) {
     const auto lamps_for = [](bool signals, std::vector<double> planes_nm) {
-        Rig rig = habcam(3, 3, "habcam-emitters");
+        Rig rig = scene_rig("habcam-emitters.toml", 3, 3);
         rig.water.multiple = 20.0;
         const EmitterLamps lamps =
             Tracer(rig, {.signals = signals, .planes_nm = std::move(planes_nm)}).lamps(0);
@@ -644,84 +635,27 @@ TEST(TracerSignal, HoldsItsStatedErrorUpToTheHorizon) {
 
 // Behind a port the geometry changes with wavelength as well, smoothly where there is no edge.
 TEST(TracerSignal, HoldsItsStatedErrorBehindAPort) {
-    Rig rig = habcam(3, 2, "port");
+    Rig rig = scene_rig("port.toml", 3, 2);
     for (Strobe& strobe : rig.strobes) strobe.beam = lambertian();
     expect_signals_within_stated_error(rig, kSimpsonError);
 }
 
 // --- Against the tests' own formula ----------------------------------------------------------
 
-class Dice {
-  public:
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine_);
-    }
-    bool chance() { return between(0.0, 1.0) < 0.5; }
-    Spectrum curve(double least, double most) {
-        return {"random",
-                {390.0, 480.0, 560.0, 730.0},
-                {between(least, most),
-                 between(least, most),
-                 between(least, most),
-                 between(least, most)}};
-    }
-
-  private:
-    std::mt19937_64 engine_{7};
-};
-
-Rig random_rig(Dice& dice) {
-    Rig rig = plain_rig(5, 4, dice.between(0.05, 0.3));
-    rig.sled = {.altitude_m = dice.between(0.5, 8.0),
-                .pitch_rad = dice.between(-0.6, 0.6),
-                .roll_rad = dice.between(-0.6, 0.6)};
-    if (dice.chance()) {
-        rig.camera.port = PortWindow{.distance_m = dice.between(0.01, 0.1),
-                                     .thickness_m = dice.between(0.002, 0.03),
-                                     .glass = builtin_glass(dice.chance() ? "bk7" : "sapphire")};
-    }
-    rig.water = {.absorption_per_m = dice.curve(0.0, 0.6),
-                 .multiple = dice.chance() ? dice.between(0.0, 2.0) : 0.0,
-                 .uniform_loss_per_m = dice.chance() ? dice.between(0.0, 0.3) : 0.0,
-                 .salinity_psu = dice.between(0.0, 40.0),
-                 .temperature_c = dice.between(0.0, 30.0)};
-    rig.seafloor = {.reflectance = dice.curve(0.0, 1.0),
-                    .phong = dice.chance() ? dice.between(0.0, 2.0) : 0.0,
-                    .phong_size = dice.between(1.0, 60.0)};
-    rig.strobes.clear();
-    const int strobes = static_cast<int>(dice.between(1.0, 4.0));
-    for (int s = 0; s < strobes; ++s) {
-        Beam beam{.name = "random",
-                  .weights = dice.chance() ? ConeWeights::Flux : ConeWeights::Literal,
-                  .cones = {}};
-        for (const double least : {0.1, 0.3, 0.6}) {
-            beam.cones.push_back({.part = "random",
-                                  .half_angle_rad = dice.between(least, 1.5),
-                                  .weight = dice.between(0.0, 2.0)});
-        }
-        // Above the floor, however it is tilted: 0.45 m aside at most, tan 0.6 twice is 0.62.
-        Strobe strobe = lamp_at({dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), -0.1}, beam);
-        strobe.axis = Vector3d(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0), 1.0).normalized();
-        strobe.spectrum = dice.curve(0.0, 3.0);
-        strobe.power = dice.between(0.1, 5.0);
-        if (dice.chance()) {
-            strobe.emitter =
-                Emitter{.across_m = dice.between(0.0, 0.1), .along_m = dice.between(0.0, 0.1)};
-        }
-        rig.strobes.push_back(strobe);
-    }
-    return rig;
-}
-
 TEST(Tracer, AgreesWithTheClosedFormOnRandomRigs) {
     constexpr double kLongChains = 1e-12;
     // A lamp so close to a cone's edge may fall on either side of it.
     constexpr double kEdge_rad = 1e-9;
-    Dice dice;
     int lit = 0;
-    for (int trial = 0; trial < 150; ++trial) {
-        const Rig rig = random_rig(dice);
-        const double lambda_nm = dice.between(400.0, 700.0);
+    for (const std::uint64_t seed : rig_seeds(1, 750)) {
+        Dice dice(~seed);
+        Rig rig = with_pixels(random_rig(seed), 5, 4);
+        for (Strobe& strobe : rig.strobes) {
+            if (dice.chance(0.5))
+                strobe.emitter = {.across_m = dice.between(0.0, 0.1),
+                                  .along_m = dice.between(0.0, 0.1)};
+        }
+        const double lambda_nm = dice.between(rig.camera.range.first_nm, rig.camera.range.last_nm);
         constexpr int kAcross = 3;
         constexpr int kAlong = 2;
         const auto plane = image_of(rig,
@@ -734,18 +668,18 @@ TEST(Tracer, AgreesWithTheClosedFormOnRandomRigs) {
                 rig, static_cast<int>(i) % 5, static_cast<int>(i) / 5, lambda_nm, kAcross, kAlong);
             if (answer.edge_rad < kEdge_rad) continue;
             EXPECT_NEAR(plane[i], answer.radiance, kLongChains * answer.radiance)
-                << "rig " << trial << ", pixel " << i;
+                << in_words(seed, rig) << ", pixel " << i;
             if (answer.radiance > 0.0) ++lit;
         }
     }
-    EXPECT_GT(lit, 2000);
+    EXPECT_GT(lit, 10000);
 }
 
 // --- Bits ----------------------------------------------------------------------------------
 
 TEST(Tracer, ThreadsChangeNoBit) {
-    for (const char* scene : {"habcam", "port"}) {
-        const Rig rig = habcam(13, 11, scene);
+    for (const char* scene : {"habcam.toml", "port.toml"}) {
+        const Rig rig = scene_rig(scene, 13, 11);
         TraceOptions options{.signals = true, .planes_nm = {450.0}, .threads = 1};
         const auto alone = image_of(rig, options);
         for (const int threads : {2, 3, 16}) {
@@ -968,7 +902,7 @@ TEST(TracerConeEdges, AreOfEachLampByItselfWhereLampsAreGiven) {
 }
 
 TEST(Tracer, PixelsAreThoseOfItsRowsAndEdges) {
-    const Rig rig = habcam(13, 11, "habcam-emitters");
+    const Rig rig = scene_rig("habcam-emitters.toml", 13, 11);
     const Tracer tracer(rig, {.signals = true, .planes_nm = {450.0}, .threads = 2});
     const auto whole = tracer.rows(0, 11);
     const auto marks = tracer.on_edges(rig.camera.range);

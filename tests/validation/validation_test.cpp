@@ -4,7 +4,7 @@
 // reference.
 #include "validation/validation.h"
 
-#include "rig/file/rig_reader.h"
+#include "support/scene_rig.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -21,11 +21,7 @@ const std::vector<EmitterLamps> kLamps(4, EmitterLamps{.across = 3, .along = 2})
 constexpr double kPromise = 1.1e-4;
 
 Rig small_rig(const std::string& scene) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml");
-    rig.camera.pixel_pitch_m *= rig.camera.width_px / 34.0;
-    rig.camera.width_px = 34;
-    rig.camera.height_px = 26;
-    return rig;
+    return scene_rig(scene + ".toml", 34, 26);
 }
 
 RenderedImages render(const Rig& rig) {

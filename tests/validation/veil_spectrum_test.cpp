@@ -6,6 +6,7 @@
 
 #include "support/flat.h"
 #include "support/random_rig.h"
+#include "support/veil_rig.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -86,10 +87,8 @@ TEST(VeilSpectrum, FollowsAnEdgeBetweenTheRays) {
     rig.strobes[0].position_m = {0.5, 0.0, 0.0};
     rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
     rig.strobes[0].power = 1.0;
-    rig.strobes[0].beam = {.name = "even", .weights = ConeWeights::Literal, .cones = {}};
-    rig.strobes[0].beam.cones = {
-        {.part = "even", .half_angle_rad = 0.4, .weight = 1.0, .exponent = 0}};
-    rig.water.scatterers = {{flat(0.3), {.name = "hg", .kind = HenyeyGreenstein{.g = 0.8}}}};
+    rig.strobes[0].beam = even_beam(0.4);
+    rig.water.scatterers = {{flat(0.3), henyey_greenstein(0.8)}};
     const TracedWater water(rig.water);
     const std::vector<double> lambda_nm = wavelengths_of(rig);
     const VeilSpectrum all(rig, water, lambda_nm);

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "image/any_image.h"
-#include "rig/file/rig_reader.h"
 #include "support/has.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -22,10 +22,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRounding = 1e-12;
-
-Rig habcam() {
-    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-}
 
 // HabCam's own rig is pitched by 5 degrees.
 const Sled kRigSled = habcam().sled;

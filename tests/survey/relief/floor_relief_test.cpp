@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/relief/floor_relief.h"
 
-#include "rig/file/rig_reader.h"
 #include "support/dice.h"
 #include "support/has.h"
 #include "support/random_camera.h"
 #include "support/refusal.h"
+#include "support/scene_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +20,7 @@ constexpr double kOfFloats_m = 1e-5;
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 Rig rig_of(int width_px, int height_px) {
-    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
+    Rig rig = habcam(width_px, height_px);
     rig.sled = {.altitude_m = 2.2, .pitch_rad = 0.15, .roll_rad = -0.1};
     return rig;
 }
