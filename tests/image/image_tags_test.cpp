@@ -197,9 +197,8 @@ TEST(ImageTags, ThereAreNoneWhereThereAreNoneOrNoneCanBeRead) {
 
 TEST(ImageTags, WhatIsNoImageTakesNone) {
     const TempFolder folder;
-    write_file(
-        folder.path() / "a.dng",
-        dng_of({.width = 2, .height = 2, .samples = {1, 2, 3, 4}, .exposure_ms = 4}));
+    write_file(folder.path() / "a.dng",
+               dng_of({.width = 2, .height = 2, .samples = {1, 2, 3, 4}, .exposure_ms = 4}));
     const SharedTags tags = read_image_tags(folder.path() / "a.dng");
     ASSERT_TRUE(tags);
     EXPECT_EQ(exposure_of(*tags).time_s, 0.004);
