@@ -18,6 +18,7 @@
 #include "survey/correct/correction_run.h"
 #include "survey/correct/ifdo_results.h"
 #include "survey/images/camera_numbers.h"
+#include "survey/light_at.h"
 
 #include <fmt/format.h>
 #ifdef __GLIBC__
@@ -125,8 +126,8 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
                                             Rig rig,
                                             const Survey& survey) {
     if (options.no_veil || !rig.water.scatters()) return std::nullopt;
-    if (survey.navigation)
-        rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
+    const std::vector<Sled> sleds = sleds_of(survey.navigation, survey.files);
+    if (!sleds.empty()) rig.sled = std::ranges::max(sleds, {}, &Sled::altitude_m);
     return model_error(rig, options.input.rig, options.model_tolerance, "--altitude");
 }
 

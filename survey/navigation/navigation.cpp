@@ -212,17 +212,4 @@ void Navigation::limit_altitude(double least_m, double most_m) {
     most_m_ = most_m;
 }
 
-std::optional<Sled> highest_pose(const Navigation& navigation,
-                                 const std::vector<ImageFile>& files) {
-    std::optional<Sled> highest;
-    for (const ImageFile& file : files) {
-        try {
-            const Sled& sled = navigation.pose_of(file.source).sled;
-            if (!highest || sled.altitude_m > highest->altitude_m) highest = sled;
-        } catch (const InputError&) {  // reported when its turn comes
-        }
-    }
-    return highest;
-}
-
 }  // namespace aphotic

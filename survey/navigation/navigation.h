@@ -58,6 +58,7 @@ struct NavigationNotes {
 
 struct ImagePose {
     std::string image{};  // as in the source
+    double time_s = 0.0;  // of a track's, which has no image: since 1970 (time_text.h)
     Sled sled{};
     std::size_t line = 0;  // of the file; 0: none
     std::string fault{};   // why the source gives no pose; or empty
@@ -132,9 +133,5 @@ class Navigation {
     double most_m_ = std::numeric_limits<double>::infinity();
     std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
 };
-
-// The highest pose of these images; empty if no image has one.
-[[nodiscard]] std::optional<Sled> highest_pose(const Navigation& navigation,
-                                               const std::vector<ImageFile>& files);
 
 }  // namespace aphotic

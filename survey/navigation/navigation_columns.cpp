@@ -10,6 +10,7 @@
 #include "rig/beam/photometric_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -94,17 +95,6 @@ std::string is_it(std::string_view wanted, const Header& header) {
     return near.empty() ? "" : fmt::format(" (is it '{}'?)", printable(near));
 }
 
-// A header may be any line, of any length.
-std::string shown_columns(const Header& header) {
-    constexpr std::size_t kMostLetters = 400;
-    std::string words;
-    for (const std::string& name : header) {
-        words += (words.empty() ? "" : ",") + name;
-        if (words.size() > kMostLetters) return printable(words.substr(0, kMostLetters)) + "...";
-    }
-    return printable(words);
-}
-
 // Those of --columns that are present.
 NavigationColumns given_columns(const Header& header, const ColumnNames& given) {
     NavigationColumns columns;
@@ -113,18 +103,6 @@ NavigationColumns given_columns(const Header& header, const ColumnNames& given) 
         if (name != given.end()) columns.places.at(field) = column_named(header, name->second);
     }
     return columns;
-}
-
-void require_given(const HeaderRequest& request, const Header& header) {
-    for (const auto& [ours, name] : request.given) {
-        if (column_named(header, name)) continue;
-        fail_at_line(request.file,
-                     request.line,
-                     "found the columns {}; needed by --columns: '{}'{}",
-                     shown_columns(header),
-                     name,
-                     is_it(name, header));
-    }
 }
 
 NavigationColumns with_format(NavigationColumns columns,
@@ -163,33 +141,6 @@ std::optional<NavigationColumns> recognised(const NavigationColumns& given,
         }
     }
     return std::nullopt;
-}
-
-[[noreturn]] void refuse_header(const HeaderRequest& request,
-                                const Header& header,
-                                const NavigationColumns& given) {
-    std::vector<std::string_view> over_the_sea{
-        "gps_altitude", "sub_altitude", "image-altitude-meters", "pose.dep", "depth"};
-    if (request.is_pangaeas) over_the_sea.emplace_back("altitude [m]");
-    const NavigationColumns ours = with_format(given, formats_of(request).front(), header);
-    const bool has_altitude = ours.place(NavigationField::Altitude).has_value();
-    const std::string_view needed = has_altitude ? "image" : "altitude_m";
-    std::string sea;
-    for (const std::string_view name : over_the_sea) {
-        const auto place = column_named(header, name);
-        if (has_altitude || !place || !sea.empty()) continue;
-        sea = fmt::format("; '{}' is relative to the sea level", printable(header[*place]));
-    }
-    fail_at_line(request.file,
-                 request.line,
-                 "found the columns {}{}; needed: '{}'{}{}, or --columns {}=NAME{}",
-                 shown_columns(header),
-                 request.is_pangaeas ? ", of PANGAEA's tab file" : "",
-                 needed,
-                 has_altitude ? " or 'timestamp'" : "",
-                 is_it(needed, header),
-                 needed,
-                 sea);
 }
 
 // If an angle had another name, the rig's would be used silently.
@@ -248,19 +199,49 @@ void require_units(const HeaderRequest& request, const NavigationColumns& column
 
 }  // namespace
 
-bool is_navigation_header(const HeaderRequest& request, const Header& header) {
+void refuse_header(const HeaderRequest& request, const Header& header) {
     for (const auto& [ours, name] : request.given) {
-        if (!column_named(header, name)) return false;
+        if (column_named(header, name)) continue;
+        fail_at_line(request.file,
+                     request.line,
+                     "found the columns {}; needed by --columns: '{}'{}",
+                     fmt::join(header, ","),
+                     name,
+                     is_it(name, header));
     }
-    return recognised(given_columns(header, request.given), formats_of(request), header)
-        .has_value();
+    std::vector<std::string_view> over_the_sea{
+        "gps_altitude", "sub_altitude", "image-altitude-meters", "pose.dep", "depth"};
+    if (request.is_pangaeas) over_the_sea.emplace_back("altitude [m]");
+    const NavigationColumns ours =
+        with_format(given_columns(header, request.given), formats_of(request).front(), header);
+    const bool has_altitude = ours.place(NavigationField::Altitude).has_value();
+    const std::string_view needed = has_altitude ? "image" : "altitude_m";
+    std::string sea;
+    for (const std::string_view name : over_the_sea) {
+        const auto place = column_named(header, name);
+        if (has_altitude || !place || !sea.empty()) continue;
+        sea = fmt::format("; '{}' is relative to the sea level", printable(header[*place]));
+    }
+    fail_at_line(request.file,
+                 request.line,
+                 "found the columns {}{}; needed: '{}'{}{}, or --columns {}=NAME{}",
+                 fmt::join(header, ","),
+                 request.is_pangaeas ? ", of PANGAEA's tab file" : "",
+                 needed,
+                 has_altitude ? " or 'timestamp'" : "",
+                 is_it(needed, header),
+                 needed,
+                 sea);
 }
 
-NavigationColumns navigation_columns(const HeaderRequest& request, const Header& header) {
-    require_given(request, header);
+std::optional<NavigationColumns> navigation_columns(const HeaderRequest& request,
+                                                    const Header& header) {
+    for (const auto& [ours, name] : request.given) {
+        if (!column_named(header, name)) return std::nullopt;
+    }
     const NavigationColumns given = given_columns(header, request.given);
     std::optional<NavigationColumns> columns = recognised(given, formats_of(request), header);
-    if (!columns) refuse_header(request, header, given);
+    if (!columns) return columns;
     // One of them identifies the images; --columns may select which.
     auto& image = columns->places[0];
     auto& time = columns->places[1];
@@ -286,7 +267,7 @@ NavigationColumns navigation_columns(const HeaderRequest& request, const Header&
         }
     }
     require_units(request, *columns);
-    return *columns;
+    return columns;
 }
 
 }  // namespace aphotic

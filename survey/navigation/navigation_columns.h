@@ -83,13 +83,13 @@ struct HeaderRequest {
     bool has_places = false;  // the vehicle's place is requested
 };
 
-// Whether the columns, including the given ones, match a format.
-[[nodiscard]] bool is_navigation_header(const HeaderRequest& request,
-                                        const std::vector<std::string>& header);
+// Empty if the columns, including the given ones, match no format. An InputError, which begins with
+// file and line, if the unit in a column's name contradicts the expected one.
+[[nodiscard]] std::optional<NavigationColumns> navigation_columns(
+    const HeaderRequest& request, const std::vector<std::string>& header);
 
-// An InputError, which begins with file and line, if the columns match no format, a given one is
-// missing, or the unit in a column's name contradicts the expected one.
-[[nodiscard]] NavigationColumns navigation_columns(const HeaderRequest& request,
-                                                   const std::vector<std::string>& header);
+// The InputError for columns that match no format.
+[[noreturn]] void refuse_header(const HeaderRequest& request,
+                                const std::vector<std::string>& header);
 
 }  // namespace aphotic

@@ -210,13 +210,13 @@ ImagePose pose_in(const Layout& layout,
     return pose;
 }
 
-void add_time(NavigationRow& row, const NavigationColumns& columns, const Fields& fields) {
-    if (!row.pose.fault.empty()) return;
+void add_time(ImagePose& pose, const NavigationColumns& columns, const Fields& fields) {
+    if (!pose.fault.empty()) return;
     const std::string& text = fields[*columns.place(Time)];
     const auto time_s = unix_time_s(text);
-    if (time_s) row.time_s = *time_s;
+    pose.time_s = time_s.value_or(0.0);
     if (time_s) return;
-    row.pose.fault = fmt::format(
+    pose.fault = fmt::format(
         "{}: found {}; allowed: seconds since 1970, or a time such as 2024-03-09 12:34:56.789",
         columns.name(Time),
         shown_word(text));
@@ -235,24 +235,19 @@ class LayoutReader {
             if (auto layout = of_header()) return layout;
             if (auto layout = of_comment()) return layout;
             if (auto layout = of_values()) return layout;
-            if (!is_passed_over()) return with_header(most_frequent());  // throws
+            if (!is_passed_over()) refuse_header(request_, table_.row(most_frequent()).fields);
             table_.pass_line();
         }
         return std::nullopt;
     }
 
   private:
-    Layout with_header(char separator) {
-        const Fields header = table_.take_row(separator).fields;
-        return {.columns = navigation_columns(request_, header),
-                .separator = separator,
-                .has_header = true};
-    }
-
     std::optional<Layout> of_header() {
         for (const char separator : kSeparators) {
-            if (is_navigation_header(request_, table_.row(separator).fields))
-                return with_header(separator);
+            const auto columns = navigation_columns(request_, table_.row(separator).fields);
+            if (!columns) continue;
+            table_.take_row(separator);
+            return Layout{.columns = *columns, .separator = separator, .has_header = true};
         }
         return std::nullopt;
     }
@@ -262,12 +257,9 @@ class LayoutReader {
         TableText comment(request_.file, table_.last_comment());
         for (const char separator : kSeparators) {
             const Fields header = comment.row(separator).fields;
-            if (header.size() != table_.row(separator).fields.size() ||
-                !is_navigation_header(request_, header))
-                continue;
-            return Layout{.columns = navigation_columns(request_, header),
-                          .separator = separator,
-                          .has_header = true};
+            if (header.size() != table_.row(separator).fields.size()) continue;
+            if (const auto columns = navigation_columns(request_, header))
+                return Layout{.columns = *columns, .separator = separator, .has_header = true};
         }
         return std::nullopt;
     }
@@ -278,7 +270,9 @@ class LayoutReader {
             if (!is_habcam_img(table_.row(separator).fields)) continue;
             const auto names = comma_fields(kHabCamColumns);
             const Fields header(names.begin(), names.end());
-            return Layout{.columns = navigation_columns(request_, header), .separator = separator};
+            const auto columns = navigation_columns(request_, header);
+            if (!columns) refuse_header(request_, header);
+            return Layout{.columns = *columns, .separator = separator};
         }
         const Fields words = table_.row(kByBlanks).fields;
         const Fields cells = table_.row(';').fields;
@@ -345,17 +339,17 @@ void add_rows(NavigationTable& table,
               double radians_per_unit) {
     if (layout.is_acfrs) {
         const auto [left, right] = acfr_poses(row.fields, row.line);
-        table.rows.push_back({.pose = left});
-        if (right.image != left.image) table.rows.push_back({.pose = right});
+        table.poses.push_back(left);
+        if (right.image != left.image) table.poses.push_back(right);
         return;
     }
     const NavigationColumns& columns = layout.columns;
     ImagePose pose{.sled = rig_sled, .line = row.line};
     if (const auto image = columns.place(Image); image && *image < row.fields.size())
         pose.image = row.fields[*image];
-    NavigationRow made{.pose = pose_in(layout, row.fields, std::move(pose), radians_per_unit)};
-    if (columns.is_track()) add_time(made, columns, row.fields);
-    table.rows.push_back(std::move(made));
+    pose = pose_in(layout, row.fields, std::move(pose), radians_per_unit);
+    if (columns.is_track()) add_time(pose, columns, row.fields);
+    table.poses.push_back(std::move(pose));
 }
 
 }  // namespace
@@ -380,7 +374,7 @@ NavigationTable parse_navigation_csv(const std::string& name,
         const TextRow row = lines.take_row(layout->separator);
         // Spreadsheets end a table with rows of commas only.
         if (std::ranges::all_of(row.fields, &std::string::empty)) continue;
-        if (table.rows.size() >= kMostNavigationRows) {
+        if (table.poses.size() >= kMostNavigationRows) {
             fail_at_line(name, row.line, "found more than {} lines", kMostNavigationRows);
         }
         add_rows(table, *layout, row, rig_sled, radians_per_unit);
@@ -388,8 +382,8 @@ NavigationTable parse_navigation_csv(const std::string& name,
     }
     if (layout) table.columns = layout->columns;
     if (layout && layout->is_acfrs) table.are_cameras_own = true;
-    const bool is_of_use = std::ranges::any_of(table.rows, [&](const NavigationRow& row) {
-        return table.columns.is_track() || !row.pose.image.empty();
+    const bool is_of_use = std::ranges::any_of(table.poses, [&](const ImagePose& pose) {
+        return table.columns.is_track() || !pose.image.empty();
     });
     if (!is_of_use) {
         fail_at_line(name,

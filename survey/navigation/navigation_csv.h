@@ -30,20 +30,13 @@
 
 namespace aphotic {
 
-// A line of the table. In a track, poses have a time instead of an image, or a fault that explains
-// why not.
-struct NavigationRow {
-    ImagePose pose{};
-    double time_s = 0.0;  // since 1970 (time_text.h)
-};
-
 inline constexpr std::size_t kMostNavigationRows = 2'000'000;  // a day of 20 Hz
 
 struct NavigationTable {
     NavigationColumns columns{};
-    std::vector<NavigationRow> rows{};
-    bool are_cameras_own = false;  // angles, in radians: not the vehicle's
-    std::string cut_warning{};     // for a last line without a line break whose last number is used
+    std::vector<ImagePose> poses{};  // in a track, each has a time, or a fault
+    bool are_cameras_own = false;    // angles, in radians: not the vehicle's
+    std::string cut_warning{};  // for a last line without a line break whose last number is used
 };
 
 // name is for messages. An InputError, with the line, for an unknown header or an empty table.

@@ -161,19 +161,17 @@ Navigation navigation_by_time(const NavigationTable& table,
                               NavigationNotes notes) {
     if (!options.time_mask.empty())
         naming("--image-time", [&] { require_time_mask(options.time_mask); });
-    std::vector<TrackPoint> points;
-    for (const auto& [pose, time_s] : table.rows) {
-        if (pose.fault.empty() && is_of_use(pose.sled, mounting, options))
-            points.push_back(
-                {.time_s = time_s, .sled = pose.sled, .line = pose.line, .place = pose.place});
+    std::vector<ImagePose> points;
+    for (const ImagePose& pose : table.poses) {
+        if (pose.fault.empty() && is_of_use(pose.sled, mounting, options)) points.push_back(pose);
     }
-    const ImagePose& first = table.rows.front().pose;
+    const ImagePose& first = table.poses.front();
     if (points.empty()) {
         const std::string fault = first.fault.empty() ? fault_of(first.sled) : first.fault;
         fail_at_line(options.source,
                      first.line,
                      "the first of {} lines, none of which can be used: {}",
-                     table.rows.size(),
+                     table.poses.size(),
                      fault.empty()
                          ? "altitude_m: found one that --altitude or the camera's position excludes"
                          : fault);
@@ -181,14 +179,15 @@ Navigation navigation_by_time(const NavigationTable& table,
     notes.times = TimesOfImages{.mask = options.time_mask,
                                 .clock_offset_s = options.clock_offset_s,
                                 .longest_gap_s = options.longest_gap_s,
-                                .lines_left_out = table.rows.size() - points.size()};
+                                .lines_left_out = table.poses.size() - points.size()};
     const Track track(std::move(points), options.longest_gap_s);
     std::atomic<std::size_t> without_zone = 0;
     const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
         const ImageTime time = image_time(image, options.time_mask);
         if (time.lacks_zone) ++without_zone;
-        pose.sled = track.at(time.time_s + options.clock_offset_s);
-        pose.place = track.place_at(time.time_s + options.clock_offset_s);
+        const ImagePose then = track.at(time.time_s + options.clock_offset_s);
+        pose.sled = then.sled;
+        pose.place = then.place;
     };
     Navigation navigation(
         options.source, poses_of(files, options.jobs, read), given, ImagesKnownBy::Path);
@@ -220,9 +219,7 @@ Navigation navigation_of_table(const NavigationTable& table,
     if (columns.is_track())
         return navigation_by_time(table, options, files, mounting, given, std::move(notes));
     require_no_times(options);
-    std::vector<ImagePose> poses;
-    for (const NavigationRow& row : table.rows) poses.push_back(row.pose);
-    Navigation navigation(options.source, poses, given);
+    Navigation navigation(options.source, table.poses, given);
     navigation.note(std::move(notes));
     return navigation;
 }
@@ -280,6 +277,7 @@ Navigation navigation_of_ifdo(std::string_view text,
     const Mounting camera{.altitude_is = AltitudeIs::Plumb};
     Navigation navigation =
         parse_navigation_ifdo(options.source, text, rig != nullptr ? rig->sled : Sled{});
+    navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
     require_angles(navigation, options, camera, rig != nullptr);
     if (rig != nullptr) navigation.take_angles_of_rig();
     NavigationNotes notes{.format = "iFDO", .mounting = camera};
@@ -297,12 +295,14 @@ Navigation navigation_of_ifdo(std::string_view text,
     return navigation;
 }
 
+// The camera's, at the altitudes asked for.
 Navigation mounted(Navigation navigation,
                    const NavigationOptions& options,
                    const Mounting& mounting,
                    bool has_rig) {
     require_angles(navigation, options, mounting, has_rig);
     navigation.mount(mounting);
+    navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
     NavigationNotes notes = navigation.notes().value_or(NavigationNotes{});
     notes.mounting = mounting;
     navigation.note(std::move(notes));
@@ -317,11 +317,6 @@ void require_text(const std::string& source, std::string_view text) {
         throw InputError("{}: found zero bytes, as UTF-16 has; allowed: UTF-8", source);
 }
 
-Navigation limited(Navigation navigation, const NavigationOptions& options) {
-    navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
-    return navigation;
-}
-
 }  // namespace
 
 Navigation parse_navigation(std::string_view text,
@@ -330,7 +325,7 @@ Navigation parse_navigation(std::string_view text,
                             const Rig* rig) {
     require_text(options.source, text);
     // The camera's own poses need no mounting.
-    if (is_ifdo(text)) return limited(navigation_of_ifdo(text, options, rig), options);
+    if (is_ifdo(text)) return navigation_of_ifdo(text, options, rig);
     const Mounting mounting = mounting_of(options, rig);
     const NavigationTable table = parse_navigation_csv(options.source,
                                                        text,
@@ -342,7 +337,7 @@ Navigation parse_navigation(std::string_view text,
     Navigation vehicle = navigation_of_table(table, options, files, mounting);
     if (!table.cut_warning.empty()) vehicle.warn(table.cut_warning);
     if (rig != nullptr) vehicle.take_angles_of_rig();
-    return limited(mounted(std::move(vehicle), options, mounting, rig != nullptr), options);
+    return mounted(std::move(vehicle), options, mounting, rig != nullptr);
 }
 
 Navigation read_navigation(const NavigationOptions& options,
@@ -351,9 +346,8 @@ Navigation read_navigation(const NavigationOptions& options,
     if (options.source != kNavigationInTags)
         return parse_navigation(
             read_text_file(options.source, kMostNavigation_bytes), options, files, rig);
-    Navigation vehicle = navigation_in_tags(options, files);
-    return limited(mounted(std::move(vehicle), options, mounting_of(options, rig), rig != nullptr),
-                   options);
+    return mounted(
+        navigation_in_tags(options, files), options, mounting_of(options, rig), rig != nullptr);
 }
 
 }  // namespace aphotic

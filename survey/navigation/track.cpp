@@ -11,19 +11,20 @@
 
 namespace aphotic {
 
-Track::Track(std::vector<TrackPoint> points, double longest_gap_s)
+Track::Track(std::vector<ImagePose> points, double longest_gap_s)
     : points_(std::move(points)), longest_gap_s_(longest_gap_s) {
-    std::ranges::stable_sort(points_, {}, &TrackPoint::time_s);
-    const auto is_again = [](const TrackPoint& a, const TrackPoint& b) {
+    std::ranges::stable_sort(points_, {}, &ImagePose::time_s);
+    const auto is_again = [](const ImagePose& a, const ImagePose& b) {
         return a.time_s == b.time_s;
     };
     points_.erase(std::unique(points_.begin(), points_.end(), is_again), points_.end());
 }
 
-Track::Span Track::span_at(double time_s) const {
+ImagePose Track::at(double time_s) const {
+    constexpr double kRound_rad = 2.0 * std::numbers::pi;
     if (points_.empty()) throw InputError("has no line that could be used");
-    const auto after = std::ranges::lower_bound(points_, time_s, {}, &TrackPoint::time_s);
-    if (after != points_.end() && after->time_s == time_s) return {*after, *after};
+    const auto after = std::ranges::lower_bound(points_, time_s, {}, &ImagePose::time_s);
+    if (after != points_.end() && after->time_s == time_s) return *after;
     if (after == points_.begin()) {
         throw InputError("the image's time, {}, is {:.6g} s before the first, of line {}",
                          utc_text(time_s),
@@ -48,29 +49,20 @@ Track::Span Track::span_at(double time_s) const {
             after->line,
             longest_gap_s_);
     }
-    return {*before, *after, (time_s - before->time_s) / gap_s};
-}
-
-Sled Track::at(double time_s) const {
-    const Span span = span_at(time_s);
-    const auto between = [&](double Sled::*part) {
-        return std::lerp(span.before.sled.*part, span.after.sled.*part, span.share);
-    };
-    return {between(&Sled::altitude_m), between(&Sled::pitch_rad), between(&Sled::roll_rad)};
-}
-
-Place Track::place_at(double time_s) const {
-    constexpr double kRound_rad = 2.0 * std::numbers::pi;
-    const Span span = span_at(time_s);
-    const auto between = [&](double Place::*part) {
-        return std::lerp(span.before.place.*part, span.after.place.*part, span.share);
+    const double share = (time_s - before->time_s) / gap_s;
+    const auto between = [&](auto whole, auto part) {
+        return std::lerp((*before).*whole.*part, (*after).*whole.*part, share);
     };
     const double turn_rad =
-        std::remainder(span.after.place.heading_rad - span.before.place.heading_rad, kRound_rad);
-    return {.east_m = between(&Place::east_m),
-            .north_m = between(&Place::north_m),
-            .heading_rad = span.before.place.heading_rad + span.share * turn_rad,
-            .depth_m = between(&Place::depth_m)};
+        std::remainder(after->place.heading_rad - before->place.heading_rad, kRound_rad);
+    return {.time_s = time_s,
+            .sled = {.altitude_m = between(&ImagePose::sled, &Sled::altitude_m),
+                     .pitch_rad = between(&ImagePose::sled, &Sled::pitch_rad),
+                     .roll_rad = between(&ImagePose::sled, &Sled::roll_rad)},
+            .place = {.east_m = between(&ImagePose::place, &Place::east_m),
+                      .north_m = between(&ImagePose::place, &Place::north_m),
+                      .heading_rad = before->place.heading_rad + share * turn_rad,
+                      .depth_m = between(&ImagePose::place, &Place::depth_m)}};
 }
 
 }  // namespace aphotic

@@ -11,42 +11,25 @@
 // kLongestGap_s, the width of an altitude bin.
 #pragma once
 
-#include "rig/vehicle_pose.h"
+#include "survey/navigation/navigation.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace aphotic {
 
 inline constexpr double kLongestGap_s = 2.0;
 
-struct TrackPoint {
-    double time_s = 0.0;
-    Sled sled{};
-    std::size_t line = 0;  // of the file
-    Place place{};
-};
-
 class Track {
   public:
     // In any order; of several at the same time, the first is used.
-    Track(std::vector<TrackPoint> points, double longest_gap_s);
+    Track(std::vector<ImagePose> points, double longest_gap_s);
 
     // An InputError if the time is before the first point, after the last, or between two that are
     // more than longest_gap_s apart.
-    [[nodiscard]] Sled at(double time_s) const;
-    [[nodiscard]] Place place_at(double time_s) const;
+    [[nodiscard]] ImagePose at(double time_s) const;
 
   private:
-    // Two points, or one twice, and the time's position between them.
-    struct Span {
-        const TrackPoint& before;
-        const TrackPoint& after;
-        double share = 0.0;
-    };
-    [[nodiscard]] Span span_at(double time_s) const;
-
-    std::vector<TrackPoint> points_;  // by time
+    std::vector<ImagePose> points_;  // by time
     double longest_gap_s_;
 };
 

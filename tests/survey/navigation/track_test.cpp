@@ -28,14 +28,14 @@ std::string fault_at(double time_s) {
 }
 
 TEST(Track, IsItsPointsAndStraightBetween) {
-    EXPECT_EQ(kTrack.at(kNoon_s).altitude_m, 2.0);
-    EXPECT_EQ(kTrack.at(kNoon_s + 6.0).altitude_m, 4.0);
-    EXPECT_EQ(kTrack.at(kNoon_s + 1.0).altitude_m, 2.5);  // the first of two
-    const Sled sled = kTrack.at(kNoon_s + 0.25);
+    EXPECT_EQ(kTrack.at(kNoon_s).sled.altitude_m, 2.0);
+    EXPECT_EQ(kTrack.at(kNoon_s + 6.0).sled.altitude_m, 4.0);
+    EXPECT_EQ(kTrack.at(kNoon_s + 1.0).sled.altitude_m, 2.5);  // the first of two
+    const Sled sled = kTrack.at(kNoon_s + 0.25).sled;
     EXPECT_NEAR(sled.altitude_m, 2.125, kRounding);
     EXPECT_NEAR(sled.pitch_rad, 0.0, kRounding);
     EXPECT_NEAR(sled.roll_rad, 0.25, kRounding);
-    EXPECT_NEAR(kTrack.at(kNoon_s + 1.5).roll_rad, 0.0, kRounding);
+    EXPECT_NEAR(kTrack.at(kNoon_s + 1.5).sled.roll_rad, 0.0, kRounding);
 }
 
 // From 350 to 10 degrees by way of north.
@@ -52,7 +52,7 @@ TEST(Track, PlacesAreStraightBetweenAndHeadingsTheShorterWay) {
                                   .heading_rad = 10.0 * kDegree,
                                   .depth_m = 61.0}}},
                       kLongestGap_s);
-    const Place place = track.place_at(1.5);
+    const Place place = track.at(1.5).place;
     EXPECT_EQ(place.east_m, 500000.75);
     EXPECT_EQ(place.north_m, 8.5);
     EXPECT_EQ(place.depth_m, 60.75);
@@ -76,7 +76,7 @@ TEST(Track, IsOffByTheSagittaOfAnAcceleration) {
     const Track track({{.time_s = 0.0, .sled = {altitude_m(0.0), 0.0, 0.0}},
                        {.time_s = kLongestGap_s, .sled = {altitude_m(kLongestGap_s), 0.0, 0.0}}},
                       kLongestGap_s);
-    EXPECT_NEAR(track.at(1.0).altitude_m - altitude_m(1.0), 0.1, kRounding);
+    EXPECT_NEAR(track.at(1.0).sled.altitude_m - altitude_m(1.0), 0.1, kRounding);
 }
 
 }  // namespace
