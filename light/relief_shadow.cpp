@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "light/relief_shadow.h"
 
-#include <algorithm>
-#include <array>
 #include <vector>
 
 namespace aphotic {
@@ -10,37 +8,18 @@ namespace aphotic {
 namespace {
 
 // Between known places only.
-std::vector<std::array<unsigned, 3>> triangles_of(const Relief& relief,
-                                                  const std::vector<int>& columns,
-                                                  const std::vector<int>& rows) {
-    std::vector<std::array<unsigned, 3>> triangles;
-    const auto add = [&](std::array<unsigned, 3> corners, std::array<std::size_t, 3> pixels) {
-        if (std::ranges::all_of(pixels, [&](std::size_t p) { return relief.knows(p); }))
-            triangles.push_back(corners);
-    };
-    const auto width = static_cast<unsigned>(columns.size());
-    for (std::size_t j = 0; j + 1 < rows.size(); ++j) {
-        for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
-            const auto first = static_cast<unsigned>(j) * width + static_cast<unsigned>(i);
-            const std::size_t a = relief.at(columns[i], rows[j]);
-            const std::size_t b = relief.at(columns[i + 1], rows[j]);
-            const std::size_t c = relief.at(columns[i], rows[j + 1]);
-            const std::size_t d = relief.at(columns[i + 1], rows[j + 1]);
-            add({first, first + 1, first + width}, {a, b, c});
-            add({first + 1, first + width + 1, first + width}, {b, d, c});
-        }
-    }
-    return triangles;
-}
-
 TriangleMesh mesh_of(const Relief& relief, int step_px) {
     const std::vector<int> columns = every(step_px, relief.width_px);
-    const std::vector<int> rows = every(step_px, relief.height_px);
     std::vector<Eigen::Vector3f> vertices_m;
-    for (const int row : rows)
-        for (const int column : columns)
-            vertices_m.push_back(relief.point_m[relief.at(column, row)]);
-    return {vertices_m, triangles_of(relief, columns, rows)};
+    std::vector<int> vertices;  // by place
+    for (const int row : every(step_px, relief.height_px)) {
+        for (const int column : columns) {
+            const std::size_t pixel = relief.at(column, row);
+            vertices.push_back(relief.knows(pixel) ? static_cast<int>(vertices_m.size()) : -1);
+            if (relief.knows(pixel)) vertices_m.push_back(relief.point_m[pixel]);
+        }
+    }
+    return {vertices_m, grid_triangles(vertices, columns.size())};
 }
 
 }  // namespace

@@ -59,16 +59,16 @@ struct TriangleMesh::Scene {
     Device of = device();
     SceneHandle handle{rtcNewScene(of.get()), rtcReleaseScene};
     const Vector3f* vertices_m = nullptr;
-    const std::array<unsigned, 3>* triangles = nullptr;
+    const std::array<int, 3>* triangles = nullptr;
 };
 
 TriangleMesh::TriangleMesh(std::span<const Vector3f> vertices_m,
-                           std::span<const std::array<unsigned, 3>> triangles) {
+                           std::span<const std::array<int, 3>> triangles) {
     auto scene = std::make_shared<Scene>();
     RTCGeometry geometry = rtcNewGeometry(scene->of.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* const vertices = new_buffer<Vector3f>(
         geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices_m.size());
-    auto* const corners = new_buffer<std::array<unsigned, 3>>(
+    auto* const corners = new_buffer<std::array<int, 3>>(
         geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
     std::ranges::copy(vertices_m, vertices);
     std::ranges::copy(triangles, corners);
@@ -110,6 +110,21 @@ std::optional<double> TriangleMesh::first_hit(const Vector3d& from_m, const Vect
     constexpr double kOfFloats = 1e-3;
     const double by_floats = found.ray.tfar;
     return std::abs(times - by_floats) <= kOfFloats * by_floats ? times : by_floats;
+}
+
+std::vector<std::array<int, 3>> grid_triangles(const std::vector<int>& vertices,
+                                               std::size_t width) {
+    std::vector<std::array<int, 3>> triangles;
+    const auto add = [&](const std::array<int, 3>& corners) {
+        if (std::ranges::min(corners) >= 0) triangles.push_back(corners);
+    };
+    for (std::size_t here = 0; here + width < vertices.size(); ++here) {
+        if (here % width + 1 == width) continue;
+        const std::size_t below = here + width;
+        add({vertices[here], vertices[here + 1], vertices[below]});
+        add({vertices[here + 1], vertices[below + 1], vertices[below]});
+    }
+    return triangles;
 }
 
 }  // namespace aphotic

@@ -8,9 +8,11 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace aphotic {
 
@@ -18,7 +20,7 @@ class TriangleMesh {
   public:
     // Triangles by their vertices' indices; vertices in use must be finite.
     TriangleMesh(std::span<const Eigen::Vector3f> vertices_m,
-                 std::span<const std::array<unsigned, 3>> triangles);
+                 std::span<const std::array<int, 3>> triangles);
 
     // Whether a triangle lies between from + least way and from + way.
     [[nodiscard]] bool blocks(const Eigen::Vector3f& from_m,
@@ -33,5 +35,10 @@ class TriangleMesh {
     struct Scene;
     std::shared_ptr<const Scene> scene_;
 };
+
+// Two triangles for each four neighbouring places of a grid, given the vertex of each place, row by
+// row; -1: a place without one.
+[[nodiscard]] std::vector<std::array<int, 3>> grid_triangles(const std::vector<int>& vertices,
+                                                             std::size_t width);
 
 }  // namespace aphotic

@@ -4,6 +4,8 @@
 #include "base/upper_median.h"
 #include "image/image_size.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,47 +18,28 @@ constexpr double kKnownShare = 0.25;
 constexpr double kWorse = 4.0;
 constexpr double kConsistent = 3.0;  // a range's own residual, in rms
 
-// Sums over some pixels of their places (x, y, z = 1/Z). In double, since variances may be as small
-// as a millionth of the squares.
-struct Moments {
-    double count = 0.0;
-    Eigen::Array3d first = Eigen::Array3d::Zero();
-    Eigen::Array3d squares = Eigen::Array3d::Zero();
-    Eigen::Array3d products = Eigen::Array3d::Zero();  // yz, zx, xy
+// The sum over some pixels of v v^T, v = (1, x, y, z = 1/Z). In double, since variances may be as
+// small as a millionth of the squares.
+using Moments = Eigen::Matrix4d;
 
-    void add(double x, double y, double z) {
-        count += 1.0;
-        first += Eigen::Array3d(x, y, z);
-        squares += Eigen::Array3d(x * x, y * y, z * z);
-        products += Eigen::Array3d(y * z, z * x, x * y);
-    }
-    Moments& operator+=(const Moments& other) {
-        count += other.count;
-        first += other.first;
-        squares += other.squares;
-        products += other.products;
-        return *this;
-    }
-};
+Moments moments_of(const InversePlace& one) {
+    const Eigen::Vector4d v(1.0, one.place.x(), one.place.y(), one.inverse_per_m);
+    return v * v.transpose();
+}
 
 LocalPlane plane_through(const Moments& sums) {
-    const Eigen::Array3d mean = sums.first / sums.count;
-    const Eigen::Array3d variance = sums.squares / sums.count - mean * mean;
-    const Eigen::Array3d common =
-        sums.products / sums.count -
-        Eigen::Array3d(mean(1) * mean(2), mean(2) * mean(0), mean(0) * mean(1));
+    const Eigen::Vector3d mean = sums.bottomLeftCorner<3, 1>() / sums(0, 0);
+    const Eigen::Matrix3d covariance =
+        sums.bottomRightCorner<3, 3>() / sums(0, 0) - mean * mean.transpose();
+    const Eigen::Matrix2d of_places = covariance.topLeftCorner<2, 2>();
+    const Eigen::Vector2d with_z = covariance.topRightCorner<2, 1>();
     // A single row or column of pixels has no slope across itself.
     constexpr double kLeastSpread = 1e-6;
-    const double determinant = variance(0) * variance(1) - common(2) * common(2);
-    const double trace = variance(0) + variance(1);
-    double b = 0.0;
-    double c = 0.0;
-    if (determinant > kLeastSpread * trace * trace) {
-        b = (variance(1) * common(1) - common(2) * common(0)) / determinant;
-        c = (variance(0) * common(0) - common(2) * common(1)) / determinant;
-    }
-    return {.abc = {mean(2) - b * mean(0) - c * mean(1), b, c},
-            .rms_per_m = std::sqrt(std::max(0.0, variance(2) - b * common(1) - c * common(0)))};
+    Eigen::Vector2d bc = Eigen::Vector2d::Zero();
+    if (of_places.determinant() > kLeastSpread * of_places.trace() * of_places.trace())
+        bc = of_places.inverse() * with_z;
+    return {.abc = {mean.z() - bc.dot(mean.head<2>()), bc.x(), bc.y()},
+            .rms_per_m = std::sqrt(std::max(0.0, covariance(2, 2) - bc.dot(with_z)))};
 }
 
 }  // namespace
@@ -69,29 +52,28 @@ LocalPlanes::LocalPlanes(const std::vector<InversePlace>& places, int width_px, 
       down_(0) {
     const auto height_px = static_cast<int>(places.size()) / width_px;
     down_ = (height_px + block_px - 1) / block_px;
-    std::vector<Moments> blocks(size_of(across_) * size_of(down_));
+    std::vector<Moments> blocks(size_of(across_) * size_of(down_), Moments::Zero());
     for (int row = 0; row < height_px; ++row) {
         Moments* const blocks_of_row = &blocks[size_of(row / block_px) * size_of(across_)];
         for (int column = 0; column < width_px; ++column) {
             const InversePlace& one = places[size_of(row) * size_of(width_px) + size_of(column)];
             if (std::isfinite(one.inverse_per_m))
-                blocks_of_row[column / block_px].add(
-                    one.place.x(), one.place.y(), one.inverse_per_m);
+                blocks_of_row[column / block_px] += moments_of(one);
         }
     }
     const double whole = 9.0 * block_px * block_px;
     for (int j = 0; j < down_; ++j) {
         for (int i = 0; i < across_; ++i) {
-            Moments sums;
+            Moments sums = Moments::Zero();
             for (int y = std::max(0, j - 1); y <= std::min(down_ - 1, j + 1); ++y)
                 for (int x = std::max(0, i - 1); x <= std::min(across_ - 1, i + 1); ++x)
                     sums += blocks[size_of(y) * size_of(across_) + size_of(x)];
             Window& window = windows_.emplace_back();
-            window.is_known = sums.count >= std::max(4.0, kKnownShare * whole);
+            window.count = sums(0, 0);
+            window.is_known = window.count >= std::max(4.0, kKnownShare * whole);
             if (!window.is_known) continue;
             window.plane = plane_through(sums);
-            window.count = sums.count;
-            window.mean_per_m = sums.first(2) / sums.count;
+            window.mean_per_m = sums(0, 3) / window.count;
         }
     }
     for (int j = 0; j < down_; ++j)
@@ -150,12 +132,10 @@ std::optional<LocalPlane> LocalPlanes::finest(int column, int row) const {
     for (int y = row - 1; y <= row + 1; ++y) {
         for (int x = column - 1; x <= column + 1; ++x) {
             if (x < 1 || y < 1 || x > width_px_ - 2 || y > height_px - 2) continue;
-            Moments sums;
-            for (int k = 0; k < 9; ++k) {
-                const InversePlace& one =
-                    places_[size_of(y - 1 + k / 3) * size_of(width_px_) + size_of(x - 1 + k % 3)];
-                sums.add(one.place.x(), one.place.y(), one.inverse_per_m);
-            }
+            Moments sums = Moments::Zero();
+            for (int k = 0; k < 9; ++k)
+                sums += moments_of(
+                    places_[size_of(y - 1 + k / 3) * size_of(width_px_) + size_of(x - 1 + k % 3)]);
             const LocalPlane plane = plane_through(sums);
             if (std::isfinite(plane.abc.sum()) && (!found || plane.rms_per_m < found->rms_per_m))
                 found = plane;

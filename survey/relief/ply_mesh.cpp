@@ -62,7 +62,7 @@ class PlyReader {
             else if (element.name == "face")
                 read_faces(element);
             else
-                pass(element);
+                each(element, [](const Row&) {});
         }
         if (mesh_.triangles.empty())
             fail("found {} vertices and no faces; allowed: a mesh of triangles",
@@ -151,30 +151,23 @@ class PlyReader {
              printable(in_->name));
     }
 
-    // use(property, value): for all properties of an element except lists; list(property, values).
-    template <typename Use, typename List>
-    void each(const PlyElement& element, const Use& use, const List& list) {
+    // The values of one element by property: several, or none, of a list.
+    using Row = std::vector<std::vector<double>>;
+
+    template <typename Use>
+    void each(const PlyElement& element, const Use& use) {
         in_ = &element;
         if (element.properties.empty()) return;
-        std::vector<double> values;
+        Row row(element.properties.size());
         for (place_ = 0; place_ < element.count; ++place_) {
-            for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            for (std::size_t i = 0; i < row.size(); ++i) {
                 const PlyProperty& property = element.properties[i];
-                if (property.count == nullptr) {
-                    use(i, take(*property.type));
-                    continue;
-                }
-                values.clear();
-                const double many = take(*property.count);
-                for (double n = 0.0; n < many; ++n) values.push_back(take(*property.type));
-                list(i, values);
+                const double many = property.count == nullptr ? 1.0 : take(*property.count);
+                row[i].clear();
+                for (double n = 0.0; n < many; ++n) row[i].push_back(take(*property.type));
             }
+            use(row);
         }
-    }
-
-    void pass(const PlyElement& element) {
-        each(
-            element, [](auto, auto) {}, [](auto, const auto&) {});
     }
 
     [[nodiscard]] std::optional<std::size_t> property_of(const PlyElement& element,
@@ -192,33 +185,20 @@ class PlyReader {
         const auto y = property_of(element, "y", false);
         const auto z = property_of(element, "z", false);
         if (!x || !y || !z) fail("found vertices without x, y or z; needed: all three");
-        const std::size_t last = std::max({*x, *y, *z});
-        Eigen::Vector3d vertex_m;
-        each(
-            element,
-            [&](std::size_t i, double value) {
-                if (i == *x) vertex_m.x() = value;
-                if (i == *y) vertex_m.y() = value;
-                if (i == *z) vertex_m.z() = value;
-                if (i != last) return;
-                if (!vertex_m.allFinite())
-                    fail("found vertex {} with a coordinate that is not finite; allowed: numbers",
-                         place_ + 1);
-                mesh_.vertices_m.push_back(vertex_m);
-            },
-            [](auto, const auto&) {});
+        each(element, [&](const Row& row) {
+            const Eigen::Vector3d vertex_m(row[*x][0], row[*y][0], row[*z][0]);
+            if (!vertex_m.allFinite())
+                fail("found vertex {} with a coordinate that is not finite; allowed: numbers",
+                     place_ + 1);
+            mesh_.vertices_m.push_back(vertex_m);
+        });
     }
 
     void read_faces(const PlyElement& element) {
         auto corners = property_of(element, "vertex_indices", true);
         if (!corners) corners = property_of(element, "vertex_index", true);
         if (!corners) fail("found faces without vertex_indices; needed: the list of that name");
-        each(
-            element,
-            [](auto, auto) {},
-            [&](std::size_t i, const std::vector<double>& values) {
-                if (i == *corners) add_face(values);
-            });
+        each(element, [&](const Row& row) { add_face(row[*corners]); });
     }
 
     void add_face(const std::vector<double>& values) {

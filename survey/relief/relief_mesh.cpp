@@ -5,11 +5,10 @@
 #include "base/error.h"
 #include "base/words.h"
 #include "image/image_size.h"
+#include "light/triangle_mesh.h"
 #include "rig/file/mesh_reader.h"
 #include "survey/relief/ply_mesh.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -49,17 +48,7 @@ Mesh mesh_of(const HeightGrid& grid) {
                                              height_m);
         }
     }
-    const auto add = [&](std::array<int, 3> corners) {
-        if (std::ranges::min(corners) >= 0) mesh.triangles.push_back(corners);
-    };
-    const std::size_t width = size_of(grid.width);
-    for (std::size_t row = 0; row + 1 < size_of(grid.height); ++row) {
-        for (std::size_t column = 0; column + 1 < width; ++column) {
-            const int* const here = &vertices[row * width + column];
-            add({here[0], here[width], here[1]});
-            add({here[1], here[width], here[width + 1]});
-        }
-    }
+    mesh.triangles = grid_triangles(vertices, size_of(grid.width));
     if (mesh.triangles.empty())
         throw InputError(
             "found no three adjacent known heights in a grid of {} x {}; allowed: at least one "

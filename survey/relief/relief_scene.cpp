@@ -32,12 +32,7 @@ TriangleMesh mesh_about(const Vector3d& middle_m, const Mesh& mesh, ReliefAxes a
     vertices_m.reserve(mesh.vertices_m.size());
     for (const Vector3d& vertex_m : mesh.vertices_m)
         vertices_m.emplace_back((in_world(vertex_m, axes) - middle_m).cast<float>());
-    std::vector<std::array<unsigned, 3>> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles)
-        triangles.push_back(
-            {static_cast<unsigned>(a), static_cast<unsigned>(b), static_cast<unsigned>(c)});
-    return {vertices_m, triangles};
+    return {vertices_m, mesh.triangles};
 }
 
 }  // namespace

@@ -20,14 +20,14 @@ constexpr double kRounding = 1e-13;  // of some tens of operations on doubles, s
 // floats.
 TriangleMesh slope() {
     std::vector<Vector3f> vertices_m;
-    std::vector<std::array<unsigned, 3>> triangles;
+    std::vector<std::array<int, 3>> triangles;
     for (int j = -8; j <= 8; ++j)
         for (int i = -8; i <= 8; ++i)
             vertices_m.emplace_back(
                 static_cast<float>(i), static_cast<float>(j), 2.0F + 0.25F * static_cast<float>(i));
-    for (unsigned j = 0; j < 16; ++j) {
-        for (unsigned i = 0; i < 16; ++i) {
-            const unsigned a = 17 * j + i;
+    for (int j = 0; j < 16; ++j) {
+        for (int i = 0; i < 16; ++i) {
+            const int a = 17 * j + i;
             triangles.push_back({a, a + 1, a + 17});
             triangles.push_back({a + 1, a + 17, a + 18});
         }
