@@ -155,8 +155,8 @@ FitImage photographed(const Survey& survey,
     image.sled.roll_rad += kAttitudeError_rad * normal(random);
     for (std::size_t place = 0; place < places.size(); ++place) {
         std::array<double, kChannels> sum{};
-        const int first_column = static_cast<int>(places.columns[place]) - places.block_px / 2;
-        const int first_row = static_cast<int>(places.rows[place]) - places.block_px / 2;
+        const int first_column = static_cast<int>(places.column(place)) - places.block_px / 2;
+        const int first_row = static_cast<int>(places.row(place)) - places.block_px / 2;
         for (int row = first_row; row < first_row + places.block_px; ++row) {
             for (int column = first_column; column < first_column + places.block_px; ++column) {
                 const auto floor = floor_at(grain,

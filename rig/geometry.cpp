@@ -17,11 +17,7 @@ namespace aphotic {
 using Eigen::Vector3d;
 
 Plane floor_plane(const Sled& sled) {
-    const double sin_pitch = std::sin(sled.pitch_rad);
-    const double cos_pitch = std::cos(sled.pitch_rad);
-    const Vector3d down(
-        -sin_pitch, cos_pitch * std::sin(sled.roll_rad), cos_pitch * std::cos(sled.roll_rad));
-    return {.point_m = {0.0, 0.0, sled.altitude_m}, .normal = -down.normalized()};
+    return floor_plane(sled.altitude_m, sled.pitch_rad, sled.roll_rad);
 }
 
 double height_above(const Plane& floor, const Vector3d& point_m) {

@@ -25,11 +25,24 @@
 
 namespace aphotic {
 
-struct Plane {
-    Eigen::Vector3d point_m;
-    Eigen::Vector3d normal;  // unit, on the side of the water
+// The scalar T is a number, or a number with derivatives (ceres::Jet).
+template <typename T>
+struct BasicPlane {
+    Eigen::Matrix<T, 3, 1> point_m;
+    Eigen::Matrix<T, 3, 1> normal;  // unit, on the side of the water
 };
+using Plane = BasicPlane<double>;
 
+template <typename T>
+[[nodiscard]] BasicPlane<T> floor_plane(const T& altitude_m,
+                                        const T& pitch_rad,
+                                        const T& roll_rad) {
+    using std::cos;
+    using std::sin;
+    const Eigen::Matrix<T, 3, 1> down(
+        -sin(pitch_rad), cos(pitch_rad) * sin(roll_rad), cos(pitch_rad) * cos(roll_rad));
+    return {.point_m = {T(0.0), T(0.0), altitude_m}, .normal = -down.normalized()};
+}
 [[nodiscard]] Plane floor_plane(const Sled& sled);
 
 // Height of a point above the floor, measured along its normal [m].

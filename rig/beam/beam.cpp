@@ -304,13 +304,6 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-BeamFrame frame_about(const Vector3d& axis) {
-    const bool is_fore_and_aft = axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
-    const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();
-    const Vector3d along = (reference - reference.dot(axis) * axis).normalized();
-    return {.axis = axis, .along = along, .across = axis.cross(along)};
-}
-
 double intensity_towards(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
     const auto view = pattern_view(beam, frame, towards);
     if (!view) return 0.0;

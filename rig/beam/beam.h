@@ -75,16 +75,29 @@ struct Beam {
 // The orientation of a beam, and of an emitter, in the sled's frame: unit vectors. `along` is the
 // sled's forward direction projected on the plane across the axis (down, for an axis within a
 // millionth of a radian of fore or aft, where rounding leaves almost nothing of forward), across =
-// axis x along. aphotic.inc has the same rule.
-struct BeamFrame {
-    Eigen::Vector3d axis;
-    Eigen::Vector3d along;
-    Eigen::Vector3d across;
+// axis x along. aphotic.inc has the same rule. The scalar T is a number, or a number with
+// derivatives (ceres::Jet).
+inline constexpr double kForeAndAftSine = 1e-6;
+template <typename T>
+struct BasicBeamFrame {
+    Eigen::Matrix<T, 3, 1> axis;
+    Eigen::Matrix<T, 3, 1> along;
+    Eigen::Matrix<T, 3, 1> across;
 };
-[[nodiscard]] BeamFrame frame_about(const Eigen::Vector3d& axis);
+using BeamFrame = BasicBeamFrame<double>;
+template <typename T>
+[[nodiscard]] BasicBeamFrame<T> frame_about(const Eigen::Matrix<T, 3, 1>& axis) {
+    using Vector = Eigen::Matrix<T, 3, 1>;
+    const bool is_fore_and_aft = axis.cross(Vector::UnitX()).norm() < kForeAndAftSine;
+    const Vector reference = is_fore_and_aft ? Vector::UnitZ() : Vector::UnitX();
+    const Vector along = (reference - reference.dot(axis) * axis).normalized();
+    return {.axis = axis, .along = along, .across = axis.cross(along)};
+}
+[[nodiscard]] inline BeamFrame frame_about(const Eigen::Vector3d& axis) {
+    return frame_about<double>(axis);
+}
 // [rad], for directions of any length.
 [[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-inline constexpr double kForeAndAftSine = 1e-6;
 
 // Directions `towards` are in the sled's frame, of any length.
 

@@ -21,8 +21,8 @@ struct PixelBlock {
 
 PixelBlock block_at(const FitPlaces& places, std::size_t place) {
     const double half_px = 0.5 * places.block_px;
-    const int left = static_cast<int>(places.columns[place] - half_px);
-    const int top = static_cast<int>(places.rows[place] - half_px);
+    const int left = static_cast<int>(places.column(place) - half_px);
+    const int top = static_cast<int>(places.row(place) - half_px);
     return {.left = left,
             .top = top,
             .right = std::min(left + places.block_px, places.width_px) - 1,

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace aphotic {
 namespace {
@@ -83,7 +84,7 @@ std::optional<FlyAt> fly_at(const FitObjective& objective,
     return best;
 }
 
-// The beam scaled to a flux of 1. Errors are those of its logarithm.
+// The beam scaled to a flux of 1; covariance: of its coefficients.
 std::vector<BeamPoint> curve_of(const FitBeam& beam, const MatrixXd& covariance) {
     constexpr int kPoints = 91;
     const double flux = beam.fitted().flux;
@@ -128,78 +129,75 @@ std::vector<Confounded> confounded_in(const FitProblem& problem, const MatrixXd&
     return found;
 }
 
-// Of green, or of a mono camera's one channel.
-FixedPattern pattern_of(const FitObjective& objective,
-                        const FitPoint& point,
-                        const FitPlaces& places) {
-    const FitState state = objective.state_at(point);
-    const PathLight light = objective.path_light(state);
-    const std::size_t channels = objective.channels();
-    std::vector<std::vector<float>> residuals(point.pose.size());
-    for (std::size_t i = 0; i < residuals.size(); ++i) {
-        const ImageView view = objective.view(point, state, light, i);
-        for (std::size_t at = channels / 2; at < places.size() * channels; at += channels)
-            residuals[i].push_back(static_cast<float>(view.residual(static_cast<Index>(at))));
-    }
-    return fixed_pattern(residuals, places.across());
-}
-
-// Observed and fitted, of the lowest image, a middle one, and the highest.
-std::vector<FitView> views_of(const FitObjective& objective,
-                              const FitPoint& point,
-                              const FitSamples& samples) {
-    const FitState state = objective.state_at(point);
-    const PathLight light = objective.path_light(state);
-    std::vector<std::size_t> order(samples.images.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::sort(order, {}, [&](std::size_t i) { return samples.images[i].sled.altitude_m; });
-    std::vector<FitView> views;
-    const std::size_t wanted = std::min(kFitViews, order.size());
+// Observed and fitted.
+FitView view_of(const FitObjective& objective,
+                const FitPoint& point,
+                const FitSamples& samples,
+                std::size_t image,
+                const ImageView& seen) {
     const auto mu = point.x.tail(static_cast<Index>(objective.channels()));
-    for (std::size_t k = 0; k < wanted; ++k) {
-        const std::size_t image = order[wanted == 1 ? 0 : k * (order.size() - 1) / (wanted - 1)];
-        const ImageView seen = objective.view(point, state, light, image);
-        FitView view{.image = image, .observed = {}, .fitted = {}};
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const std::size_t of = std::min(c, objective.channels() - 1);
-            for (std::size_t place = 0; place < samples.places.size(); ++place) {
-                const std::size_t at = place * kChannels + of;
-                view.observed.push_back(samples.images[image].signal[at]);
-                view.fitted.push_back(static_cast<float>(
-                    std::exp(seen.light.logarithm(static_cast<Index>(at)) +
-                             mu(static_cast<Index>(of)) + seen.level(static_cast<Index>(of)))));
-            }
+    FitView view{.image = image, .observed = {}, .fitted = {}};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto of = static_cast<Index>(std::min(c, objective.channels() - 1));
+        for (std::size_t place = 0; place < samples.places.size(); ++place) {
+            const Index at = static_cast<Index>(place * kChannels) + of;
+            view.observed.push_back(samples.images[image].signal[static_cast<std::size_t>(at)]);
+            view.fitted.push_back(static_cast<float>(
+                std::exp(seen.light.logarithm(at) + mu(of) + seen.level(of, 0))));
         }
-        views.push_back(std::move(view));
     }
-    return views;
+    return view;
 }
 
-void add_outcomes(const FitObjective& objective,
-                  const FitPoint& point,
-                  const FitSamples& samples,
-                  FitResult& result) {
-    const FitState state = objective.state_at(point);
-    const PathLight light = objective.path_light(state);
-    const auto green = static_cast<Index>(objective.channels() > 1 ? 1 : 0);
+// The lowest image, a middle one, and the highest.
+std::vector<std::size_t> images_to_show(const FitSamples& samples) {
+    std::vector<std::size_t> order(samples.images.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return samples.images[i].sled.altitude_m; });
+    if (order.size() > kFitViews)
+        order = {order.front(), order[(order.size() - 1) / 2], order.back()};
+    return order;
+}
+
+// All that the result tells of the images; those that count.
+std::vector<std::size_t> add_images(const FitObjective& objective,
+                                    const FitPoint& point,
+                                    const FitModel& model,
+                                    const FitSamples& samples,
+                                    FitResult& result) {
+    const auto q = static_cast<Index>(objective.channels());
+    const Index green = q / 2;  // or a mono camera's one channel
+    const std::vector<std::size_t> shown = images_to_show(samples);
+    result.views.resize(shown.size());
+    std::vector<std::size_t> counted;
+    std::vector<std::vector<float>> residuals(samples.images.size());
     double veil = 0.0;
     double rows = 0.0;
     for (std::size_t i = 0; i < samples.images.size(); ++i) {
-        const ImageView seen = objective.view(point, state, light, i);
+        const ImageView seen = objective.view(point, model, i);
+        if (objective.counts(seen)) counted.push_back(i);
         result.blocks += seen.blocks;
         result.images.push_back({.name = samples.images[i].name,
                                  .sled = samples.images[i].sled,
                                  .off = point.pose[i],
-                                 .brightness = seen.level(green)});
+                                 .brightness = seen.level(green, 0)});
+        for (Index row = green; row < seen.rows.rows(); row += q)
+            residuals[i].push_back(static_cast<float>(seen.rows(row, 0)));
         for (const double share : seen.light.floor_share) {
             if (!std::isfinite(share)) continue;
             veil += 1.0 - share;
             rows += 1.0;
         }
+        const auto view = std::ranges::find(shown, i);
+        if (view != shown.end())
+            result.views[static_cast<std::size_t>(view - shown.begin())] =
+                view_of(objective, point, samples, i, seen);
     }
+    result.pattern = fixed_pattern(residuals, samples.places.across());
     result.veil_share = veil / std::max(rows, 1.0);
     result.texture = std::sqrt(point.texture.details.front()(green, green));
     result.level_spread = std::sqrt(point.texture.level(green, green));
+    return counted;
 }
 
 // The difference of the logarithms of two rigs' maps over the flight, at the blocks that count by
@@ -210,18 +208,16 @@ double moved_between(const FitObjective& objective,
                      const FitObjective& other_objective,
                      FitPoint other) {
     other.pose = point.pose;
-    const FitState state = objective.state_at(point);
-    const FitState other_state = other_objective.state_at(other);
-    const PathLight light = objective.path_light(state);
-    const PathLight other_light = other_objective.path_light(other_state);
+    const FitModel model = objective.model_at(point.x);
+    const FitModel other_model = other_objective.model_at(other.x);
     const std::size_t channels = objective.channels();
     std::vector<std::vector<double>> off(channels);
     const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
     for (std::size_t i = 0; i < point.pose.size(); i += apart) {
-        const ImageView seen = objective.view(point, state, light, i);
-        const ImageView other_seen = other_objective.view(other, other_state, other_light, i);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(seen.residual.size()); ++k) {
-            if (!std::isfinite(seen.residual(static_cast<Index>(k)))) continue;
+        const ImageView seen = objective.view(point, model, i);
+        const ImageView other_seen = other_objective.view(other, other_model, i);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(seen.rows.rows()); ++k) {
+            if (!std::isfinite(seen.rows(static_cast<Index>(k), 0))) continue;
             const auto row = static_cast<Index>(k / channels * kChannels + k % channels);
             const double difference = seen.light.logarithm(row) - other_seen.light.logarithm(row);
             off[k % channels].push_back(std::isfinite(difference) ? difference
@@ -262,14 +258,16 @@ void add_numbers(const FitProblem& problem,
                  const std::vector<double>& powers,
                  FitResult& result) {
     VectorXd units(told.rows());
+    VectorXd of_state(told.rows());
     for (Index k = 0; k < told.rows(); ++k) {
         const FitNumber& number = problem.numbers[static_cast<std::size_t>(k)];
         const double scale = number.at.part == FitPart::Power
                                  ? powers[number.at.of] / result.state.power[number.at.of]
                                  : 1.0;
         units(k) = scale * number.shown_slope(point.x(k));
+        of_state(k) = number.slope(point.x(k));
         const double error = std::sqrt(told(k, k));
-        const bool is_of_curve = number.at.part == FitPart::Beam && !number.is_shown_exp;
+        const bool is_of_curve = number.at.part == FitPart::Beam && !number.is_log;
         FittedNumber one{.key = number.key,
                          .word = number.word,
                          .start = number.shown(0.0),
@@ -282,11 +280,13 @@ void add_numbers(const FitProblem& problem,
     }
     result.covariance = units.asDiagonal() * told * units.asDiagonal();
     result.confounded = confounded_in(problem, told);
+    const MatrixXd covariance = of_state.asDiagonal() * told * of_state.asDiagonal();
     Index first = 0;
     for (const FitBeam& beam : result.state.beams) {
         const auto size = std::ssize(beam.coefficients());
         if (beam.is_round())
-            result.beam_curves.push_back(curve_of(beam, told.block(first, first, size, size)));
+            result.beam_curves.push_back(
+                curve_of(beam, covariance.block(first, first, size, size)));
         first += size;
     }
 }
@@ -341,7 +341,8 @@ FitResult fit(const RigText& text,
         ++result.rounds;
         watch.progress("fitting", kFirstShare + (1.0 - kFirstShare) * round / kMostRounds);
     });
-    const std::vector<std::size_t> counted = objective.counted(point);
+    const FitModel model = objective.model_at(point.x);
+    const std::vector<std::size_t> counted = add_images(objective, point, model, samples, result);
     const auto answer_of_half = [&](std::size_t split, std::size_t which) {
         const FitSamples some = half_of(samples, counted, split, which);
         const FitObjective half(text, some, options, light, problem);
@@ -354,7 +355,7 @@ FitResult fit(const RigText& text,
                            (done + static_cast<double>(round) / kMostRounds) / (2.0 * kSplits));
         });
     };
-    result.state = objective.state_at(point);
+    result.state = model.state;
     const std::vector<double> powers = powers_in(result.state, rig);
     const FitErrors errors = errors_of(objective, problem, point, powers, answer_of_half);
     result.are_maps = samples.are_maps;
@@ -363,9 +364,6 @@ FitResult fit(const RigText& text,
     result.unevenness = errors.unevenness;
     result.moved = moved_from_rig(text, samples, options, light, objective, point);
     result.dispersion = point.dispersion;
-    result.pattern = pattern_of(objective, point, samples.places);
-    result.views = views_of(objective, point, samples);
-    add_outcomes(objective, point, samples, result);
     add_numbers(problem, objective, point, samples, errors.covariance, powers, result);
     for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     return result;

@@ -4,12 +4,12 @@
 #include "base/error.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
+#include <boost/math/special_functions/cardinal_b_spline.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace aphotic {
@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 using std::numbers::pi;
 
 constexpr double kOnAxis = 1e-12;
-constexpr double kSteps = 1e-5;  // of central differences, of directions and logarithms
+constexpr double kSteps = 1e-5;  // of central differences, relative
 // A table starts at this share of the brightest or more, since the logarithm of 0 is undefined.
 constexpr double kDimmest = 0.02;
 constexpr double kScaleHeld = 0.01;  // the relative error to which the scale of a beam is held
@@ -34,27 +34,22 @@ Vector3d direction_at(double theta_rad) {
     return {std::sin(theta_rad), 0.0, std::cos(theta_rad)};
 }
 
-// The splines that are not 0 at a place, given in steps from the axis, by knot from `first` on, and
-// their slopes over the step. Knot -1 is knot 1, mirrored.
-struct Splines {
-    std::size_t first = 0;
-    std::array<double, 4> value{};
-    std::array<double, 4> slope{};
+// A knot's spline at a place, both in steps from the axis, where it is mirrored, and its slope over
+// the step.
+struct Spline {
+    double value;
+    double slope;
 };
-Splines splines_at(double place, std::size_t count) {
-    const std::size_t cell = std::min(static_cast<std::size_t>(place), count - 3);
-    const double u = place - static_cast<double>(cell);
-    const double v = 1.0 - u;
-    const std::array<double, 4> value{v * v * v / 6.0,
-                                      (4.0 + u * u * (3.0 * u - 6.0)) / 6.0,
-                                      (4.0 + v * v * (3.0 * v - 6.0)) / 6.0,
-                                      u * u * u / 6.0};
-    const std::array<double, 4> slope{
-        -0.5 * v * v, u * (1.5 * u - 2.0), -v * (1.5 * v - 2.0), 0.5 * u * u};
-    if (cell > 0) return {.first = cell - 1, .value = value, .slope = slope};
-    return {.first = 0,
-            .value = {value[1], value[2] + value[0], value[3], 0.0},
-            .slope = {slope[1], slope[2] + slope[0], slope[3], 0.0}};
+Spline spline_at(double place, std::size_t knot) {
+    using boost::math::cardinal_b_spline;
+    using boost::math::cardinal_b_spline_prime;
+    const double off = place - static_cast<double>(knot);
+    Spline spline{.value = cardinal_b_spline<3>(off), .slope = cardinal_b_spline_prime<3>(off)};
+    if (knot == 1) {
+        spline.value += cardinal_b_spline<3>(place + 1.0);
+        spline.slope += cardinal_b_spline_prime<3>(place + 1.0);
+    }
+    return spline;
 }
 
 // At 90 degrees there is no edge.
@@ -65,6 +60,19 @@ Cone softened(Cone cone, double edge_rad) {
         std::min(0.5 * pi, cone.half_angle_rad + 0.5 * (edge_rad - cone.edge_rad));
     cone.edge_rad = std::min(edge_rad, cone.half_angle_rad);
     return cone;
+}
+
+// As soft as blocks make it, of the same cones' shares of the flux.
+Beam softened(Beam beam, double edge_rad) {
+    for (Cone& cone : beam.cones) {
+        Beam alone = beam;
+        alone.cones = {cone};
+        const double share = flux_of(alone);
+        cone = softened(cone, edge_rad);
+        cone.weight = share;
+    }
+    beam.weights = ConeWeights::Flux;
+    return beam;
 }
 
 Beam as_table(const std::vector<double>& theta_rad, const std::vector<double>& intensity) {
@@ -83,104 +91,66 @@ Beam cosine_beam(double exponent) {
     return beam;
 }
 
-// About the rig's, each by itself; for cones also the sum of their changes.
-BeamPrior prior_about(const std::vector<double>& c, bool holds_sum) {
-    const auto count = std::ssize(c);
-    BeamPrior prior{.rows = MatrixXd::Identity(count, count) / kShapeSpread,
-                    .means = VectorXd::Map(c.data(), count) / kShapeSpread};
-    if (!holds_sum) return prior;
-    const VectorXd shares = VectorXd::Map(c.data(), count).array().exp();
-    prior.rows.conservativeResize(count + 1, count);
-    prior.rows.row(count) = shares.transpose() / (shares.sum() * kScaleHeld);
-    prior.means.conservativeResize(count + 1);
-    prior.means(count) = prior.rows.row(count).dot(VectorXd::Map(c.data(), count));
-    return prior;
-}
-
 }  // namespace
 
 FitBeam::FitBeam(FitBeamKind kind, const Beam& beam, double widest_rad, double block_rad)
     : kind_(kind), widest_rad_(kind == FitBeamKind::Table ? widest_rad : 0.5 * pi), beam_(beam) {
+    const Beam soft = softened(beam, kSoftEdge * block_rad);
     if (kind == FitBeamKind::Table) {
         begin_table();
+    } else if (kind == FitBeamKind::Held) {
+        parts_ = {soft};
     } else if (kind == FitBeamKind::Cones) {
         if (beam.cones.empty())
             throw InputError("beam '{}': found one that is not a sum of cones; allowed: cones",
                              beam.name);
-        soften_cones(block_rad);
-        c_ = shares_;
-        prior_ = prior_about(c_, true);
-    } else if (kind == FitBeamKind::Held) {
-        soften_cones(block_rad);
+        for (const Cone& cone : soft.cones) {
+            c_.push_back(std::max(cone.weight, 1e-3));
+            parts_.push_back(soft);
+            parts_.back().cones = {cone};
+            parts_.back().cones.front().weight = 1.0;
+        }
+        const auto shares = Eigen::RowVectorXd::Map(c_.data(), std::ssize(c_));
+        prior_ = {.rows = shares / (shares.sum() * kScaleHeld), .means = VectorXd::Zero(1)};
     } else if (kind == FitBeamKind::Cosine) {
-        c_ = {std::log(std::max(1.0, beam.cones.empty() ? 1.0 : beam.cones.front().exponent))};
-        prior_ = prior_about(c_, false);
-        prior_.rows /= 3.0;  // a rig of another kind hardly constrains it
-        prior_.means /= 3.0;
+        c_ = {std::max(1.0, beam.cones.empty() ? 1.0 : beam.cones.front().exponent)};
     } else if (kind == FitBeamKind::Optics) {
         const auto* optics = std::get_if<BeamOptics>(&beam.pattern);
         if (optics == nullptr)
             throw InputError("beam '{}': found one without optics; allowed: optics", beam.name);
-        c_ = {std::log(optics->focal_length_m), std::log(optics->distance_m)};
-        prior_ = prior_about(c_, false);
+        c_ = {optics->focal_length_m, optics->distance_m};
     }
 }
 
-void FitBeam::soften_cones(double block_rad) {
-    for (const Cone& cone : beam_.cones) {
-        Beam alone = beam_;
-        alone.cones = {cone};
-        shares_.push_back(std::log(std::max(flux_of(alone), 1e-3)));
-        alone.weights = ConeWeights::Flux;
-        alone.cones = {softened(cone, kSoftEdge * block_rad)};
-        alone.cones.front().weight = 1.0;
-        cones_.push_back(alone);
-    }
-}
-
-// The table closest to the rig's beam under the prior of tables.
+// The rig's at the knots. Second differences on the axis are with the mirrored knot; the last row
+// holds the mean over what is lit.
 void FitBeam::begin_table() {
     const auto count = static_cast<Index>(std::max(4.0, std::ceil(widest_rad_ / kKnot_rad) + 2.0));
     widest_rad_ = static_cast<double>(count - 2) * kKnot_rad;
-    constexpr int kPerKnot = 4;
-    const Index places = kPerKnot * (count - 2) + 1;
-    std::vector<double> seen;
-    for (Index i = 0; i < places; ++i)
-        seen.push_back(intensity_towards(
-            beam_,
-            kLampFrame,
-            direction_at(std::min(0.5 * pi, static_cast<double>(i) * kKnot_rad / kPerKnot))));
-    const double brightest = std::ranges::max(seen);
-    // Second differences, on the axis with the mirrored knot.
-    MatrixXd second = MatrixXd::Zero(count - 1, count);
-    for (Index k = 0; k + 1 < count; ++k) {
-        second(k, k) -= 2.0;
-        second(k, k + 1) += 1.0;
-        second(k, std::abs(k - 1)) += 1.0;
-    }
-    second /= kRoughness;
-    MatrixXd rows = MatrixXd::Zero(places + count - 1, count);
-    VectorXd wanted = VectorXd::Zero(places + count - 1);
-    Eigen::RowVectorXd scale = Eigen::RowVectorXd::Zero(count);
-    for (Index i = 0; i < places; ++i) {
-        const double place = static_cast<double>(i) / kPerKnot;
-        const Splines splines = splines_at(place, static_cast<std::size_t>(count));
-        const double lit = std::max(seen[static_cast<std::size_t>(i)], kDimmest * brightest);
-        for (Index k = 0; k < 4; ++k) {
-            const Index knot = std::min(static_cast<Index>(splines.first) + k, count - 1);
-            const double value = splines.value[static_cast<std::size_t>(k)];
-            rows(i, knot) += value;
-            scale(knot) += value * lit * std::sin(place * kKnot_rad);
-        }
-        wanted(i) = std::log(lit);
-    }
-    rows.bottomRows(count - 1) = second;
-    const VectorXd c = rows.colPivHouseholderQr().solve(wanted);
+    const auto theta_rad = [](Index k) { return static_cast<double>(k) * kKnot_rad; };
+    VectorXd lit(count);
+    for (Index k = 0; k < count; ++k)
+        lit(k) =
+            intensity_towards(beam_, kLampFrame, direction_at(std::min(0.5 * pi, theta_rad(k))));
+    lit = lit.cwiseMax(kDimmest * lit.maxCoeff());
+    const VectorXd c = lit.array().log();
     c_.assign(c.begin(), c.end());
-    prior_.rows.resize(count, count);
-    prior_.rows << second, scale / (scale.sum() * kScaleHeld);
-    prior_.means = VectorXd::Zero(count);
-    prior_.means(count - 1) = prior_.rows.row(count - 1).dot(c);
+    MatrixXd& rows = prior_.rows;
+    rows.setZero(count, count);
+    for (Index k = 0; k + 1 < count; ++k) {
+        rows(k, k) -= 2.0 / kRoughness;
+        rows(k, k + 1) += 1.0 / kRoughness;
+        rows(k, std::abs(k - 1)) += 1.0 / kRoughness;
+    }
+    for (Index k = 0; k < count; ++k) rows(count - 1, k) = lit(k) * std::sin(theta_rad(k));
+    rows.row(count - 1) /= rows.row(count - 1).sum() * kScaleHeld;
+    prior_.means = -rows * c;
+    prior_.means(count - 1) = 0.0;
+}
+
+// A rig of another kind hardly constrains a cosine.
+double FitBeam::spread() const {
+    return kind_ == FitBeamKind::Cosine ? 3.0 * kShapeSpread : kShapeSpread;
 }
 
 std::vector<std::string> FitBeam::names() const {
@@ -202,17 +172,16 @@ void FitBeam::table_at(const Vector3d& w, BeamValue& value) const {
     const double sine = std::hypot(w.x(), w.y());
     const double theta_rad = std::atan2(sine, w.z());
     const double place = std::min(theta_rad, widest_rad_) / kKnot_rad;
-    const Splines splines = splines_at(place, c_.size());
-    value.first = splines.first;
-    const std::size_t count = std::min<std::size_t>(4, c_.size() - splines.first);
-    value.by.assign(count, 0.0);
+    value.first = std::clamp<std::size_t>(static_cast<std::size_t>(place), 1, c_.size() - 3) - 1;
+    value.by.clear();
     double log_intensity = 0.0;
     double slope = 0.0;
     const double beyond = std::max(0.0, theta_rad - widest_rad_) / kKnot_rad;
-    for (std::size_t k = 0; k < count; ++k) {
-        value.by[k] = splines.value[k] + beyond * splines.slope[k];
-        log_intensity += c_[splines.first + k] * value.by[k];
-        slope += c_[splines.first + k] * splines.slope[k] / kKnot_rad;
+    for (std::size_t k = value.first; k < value.first + 4; ++k) {
+        const Spline spline = spline_at(place, k);
+        value.by.push_back(spline.value + beyond * spline.slope);
+        log_intensity += c_[k] * value.by.back();
+        slope += c_[k] * spline.slope / kKnot_rad;
     }
     value.intensity = std::exp(log_intensity);
     for (double& by : value.by) by *= value.intensity;
@@ -228,23 +197,21 @@ void FitBeam::cosine_at(const Vector3d& w, BeamValue& value) const {
     value.intensity = 0.0;
     value.gradient.setZero();
     if (w.z() <= 0.0) return;
-    const double n = std::exp(c_.front());
+    const double n = c_.front();
     value.intensity = (n + 1.0) / (2.0 * pi) * std::pow(w.z(), n);
     value.gradient = n * value.intensity / w.z() * (Vector3d::UnitZ() - w.z() * w);
-    value.by[0] = n * value.intensity * (1.0 / (n + 1.0) + std::log(w.z()));
+    value.by[0] = value.intensity * (1.0 / (n + 1.0) + std::log(w.z()));
 }
 
 BeamOptics FitBeam::optics_with(const std::vector<double>& c) const {
     BeamOptics optics = std::get<BeamOptics>(beam_.pattern);
-    optics.focal_length_m = std::exp(c[0]);
-    optics.distance_m = std::exp(c[1]);
+    optics.focal_length_m = c[0];
+    optics.distance_m = c[1];
     return optics;
 }
 
 // Optics with the rig's own flux: one for each lens would take long, and the powers compensate.
 double FitBeam::intensity_with(const std::vector<double>& c, const Vector3d& w) const {
-    if (cones_.empty() && kind_ == FitBeamKind::Held)
-        return intensity_towards(beam_, kLampFrame, w);
     if (kind_ == FitBeamKind::Optics) {
         const auto view = pattern_view(beam_, kLampFrame, w);
         return view ? beam_.per_flux * view->factor *
@@ -252,9 +219,8 @@ double FitBeam::intensity_with(const std::vector<double>& c, const Vector3d& w) 
                     : 0.0;
     }
     double sum = 0.0;
-    const std::vector<double>& shares = kind_ == FitBeamKind::Held ? shares_ : c;
-    for (std::size_t k = 0; k < shares.size(); ++k)
-        sum += std::exp(shares[k]) * intensity_towards(cones_[k], kLampFrame, w);
+    for (std::size_t k = 0; k < parts_.size(); ++k)
+        sum += (c.empty() ? 1.0 : c[k]) * intensity_towards(parts_[k], kLampFrame, w);
     return sum;
 }
 
@@ -273,21 +239,20 @@ void FitBeam::at(const Vector3d& w, BeamValue& value) const {
     }
     for (std::size_t k = 0; k < c_.size(); ++k) {
         if (kind_ == FitBeamKind::Cones) {
-            value.by[k] = std::exp(c_[k]) * intensity_towards(cones_[k], kLampFrame, w);
+            value.by[k] = intensity_towards(parts_[k], kLampFrame, w);
             continue;
         }
         std::vector<double> more = c_;
         std::vector<double> less = c_;
-        more[k] += kSteps;
-        less[k] -= kSteps;
-        value.by[k] = (intensity_with(more, w) - intensity_with(less, w)) / (2.0 * kSteps);
+        more[k] *= 1.0 + kSteps;
+        less[k] *= 1.0 - kSteps;
+        value.by[k] = (intensity_with(more, w) - intensity_with(less, w)) / (2.0 * kSteps * c_[k]);
     }
 }
 
 FitBeam::Fitted FitBeam::fitted() const {
     if (kind_ == FitBeamKind::Held) return {.beam = beam_, .flux = 1.0};
-    if (kind_ == FitBeamKind::Cosine)
-        return {.beam = cosine_beam(std::exp(c_.front())), .flux = 1.0};
+    if (kind_ == FitBeamKind::Cosine) return {.beam = cosine_beam(c_.front()), .flux = 1.0};
     if (kind_ == FitBeamKind::Table) {
         std::vector<double> theta_rad;
         std::vector<double> intensity;
@@ -312,10 +277,9 @@ FitBeam::Fitted FitBeam::fitted() const {
         beam = scaled_to_flux(std::move(beam));
         return {.beam = beam, .flux = beam_.per_flux / beam.per_flux};
     }
-    double flux = 0.0;
-    for (const double c : c_) flux += std::exp(c);
+    const double flux = std::accumulate(c_.begin(), c_.end(), 0.0);
     beam.weights = ConeWeights::Flux;
-    for (std::size_t k = 0; k < c_.size(); ++k) beam.cones[k].weight = std::exp(c_[k]) / flux;
+    for (std::size_t k = 0; k < c_.size(); ++k) beam.cones[k].weight = c_[k] / flux;
     return {.beam = std::move(beam), .flux = flux};
 }
 

@@ -6,20 +6,20 @@
 //   Table    ln I = sum_k c_k B_k(theta), cubic B-splines of the angle off the axis, with knots
 //            kKnot_rad apart from 0 to the widest angle, mirrored at 0: I is positive, smooth, and
 //            even about the axis. Beyond the widest angle it continues with its slope.
-//   Cones    c_k: the logarithm of each cone's share of the flux. Edges sharper than kSoftEdge
-//            blocks are softened to about that width: a block's mean over a step is a slope, which
-//            locates the step
-//   Cosine   cos^n theta, c: ln n
-//   Optics   the rig's optics, c: the logarithms of its focal length and distance
+//   Cones    c_k: each cone's share of the flux. Edges sharper than kSoftEdge blocks are softened
+//   to
+//            about that width: a block's mean over a step is a slope, which locates the step
+//   Cosine   cos^n theta, c: n
+//   Optics   the rig's optics, c: its focal length and distance [m]
 //   Held     the rig's beam unchanged, with edges as soft as blocks make them
 //
 // w   direction in the lamp's frame, a unit vector: along, across, axis (rig/beam/beam.h)
 //
-// The prior of the coefficients is Gaussian, rows of R c - r of variance 1. For a table it is on
-// its second differences, 0 +- kRoughness (a P-spline: P. H. C. Eilers and B. D. Marx, Statistical
-// Science 11, 1996, 89), so that it continues evenly where no image constrains it; for all others
-// on their logarithms, the rig's +- kShapeSpread. Since the powers carry the brightness, the mean
-// of a table over the part that it lights is held, and so is the sum of all cones' shares.
+// The prior of a table is Gaussian, on its second differences, 0 +- kRoughness (a P-spline: P. H.
+// C. Eilers and B. D. Marx, Statistical Science 11, 1996, 89), so that it continues evenly where no
+// image constrains it; that of all others on their logarithms, the rig's +- spread(). Since the
+// powers carry the brightness, the mean of a table over the part that it lights is held, and so is
+// the sum of all cones' shares.
 //
 // Derivatives of Table and Cosine are exact, those of the others central differences of a closed
 // form, accurate to kSteps^2. De Boor's splines in their form for even knots: H. Prautzsch, W.
@@ -62,7 +62,8 @@ struct BeamValue {
     std::vector<double> by{};
 };
 
-// R and r.
+// Rows of R x - r of variance 1, x being the coefficients less the rig's of a table, otherwise the
+// logarithms of their quotients.
 struct BeamPrior {
     Eigen::MatrixXd rows;
     Eigen::VectorXd means;
@@ -77,9 +78,11 @@ class FitBeam {
     [[nodiscard]] FitBeamKind kind() const { return kind_; }
     [[nodiscard]] const std::vector<double>& coefficients() const { return c_; }
     [[nodiscard]] double& coefficient(std::size_t which) { return c_[which]; }
-    // Except for a table: the name of each coefficient's exponential, in the rig's units.
+    // Except for a table: each coefficient's name in the rig.
     [[nodiscard]] std::vector<std::string> names() const;
     [[nodiscard]] const BeamPrior& prior() const { return prior_; }
+    // Except for a table: the prior's, of each logarithm.
+    [[nodiscard]] double spread() const;
 
     void at(const Eigen::Vector3d& w, BeamValue& value) const;
 
@@ -97,7 +100,6 @@ class FitBeam {
 
   private:
     void begin_table();
-    void soften_cones(double block_rad);
     void table_at(const Eigen::Vector3d& w, BeamValue& value) const;
     void cosine_at(const Eigen::Vector3d& w, BeamValue& value) const;
     [[nodiscard]] double table_intensity_at(double theta_rad) const;
@@ -108,9 +110,8 @@ class FitBeam {
 
     FitBeamKind kind_;
     double widest_rad_;
-    Beam beam_;                   // the rig's
-    std::vector<Beam> cones_;     // softened, each of a flux of 1
-    std::vector<double> shares_;  // of the rig's cones, logarithms
+    Beam beam_;                // the rig's
+    std::vector<Beam> parts_;  // softened: all of it if held; or its cones, each of a flux of 1
     std::vector<double> c_;
     BeamPrior prior_;
 };

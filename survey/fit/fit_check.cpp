@@ -29,11 +29,11 @@ std::optional<Suspicion> mistaken_input(const FitSamples& samples,
                                         const FitObjective& objective,
                                         const FitProblem& problem,
                                         const FitLight& light) {
-    const PathLight path_light = objective.path_light(problem.start);
+    const FitModel rig = objective.model_at(Eigen::VectorXd::Zero(std::ssize(problem.numbers)));
     std::vector<ImageLook> looks;
     for (const FitImage& image : samples.images) {
-        looks.push_back(look_at(
-            image, light.at(problem.start, path_light, image.sled, {}, image.planes).logarithm));
+        looks.push_back(
+            look_at(image, light.at(rig.state, rig.light, image.sled, {}, image.planes).logarithm));
     }
     if (auto turned = turned_brightness(looks)) return turned;
     return red_for_blue(looks, samples.mosaic);

@@ -17,14 +17,14 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 struct Sandwich {
-    MatrixXd known;      // R^T R
-    MatrixXd curvature;  // A
-    MatrixXd inverse;    // A^-1
-    MatrixXd scores;     // sum s s^T
+    MatrixXd known;             // R^T R
+    MatrixXd curvature;         // A
+    MatrixXd inverse;           // A^-1
+    MatrixXd scores;            // sum s s^T
+    std::ptrdiff_t images = 0;  // that count
 
     [[nodiscard]] MatrixXd covariance() const { return inverse * (scores + known) * inverse; }
     // Of the difference between the solutions of two halves.
@@ -53,38 +53,30 @@ Sandwich sandwich_at(const FitObjective& objective, const FitPoint& point) {
     for (const ImageTerms& image : terms) {
         const VectorXd s = (one - image.H * of.inverse).partialPivLu().solve(image.g);
         of.scores += s * s.transpose();
+        if (image.weights.back() > 0.0) ++of.images;
     }
     return of;
 }
 
-// The logarithm of the map by block and channel, at poses of the flight, as slopes over x; the
-// level of a mean floor is subtracted.
-std::vector<RowVectorXd> map_slopes(const FitObjective& objective, const FitPoint& point) {
-    const FitState state = objective.state_at(point);
-    const PathLight light = objective.path_light(state);
-    const auto q = static_cast<Index>(objective.channels());
-    std::vector<RowVectorXd> slopes;
-    MatrixXd mean = MatrixXd::Zero(q, point.x.size());
+// M, the mean of J^T J over blocks and channels, at poses of the flight; J: slopes over x of the
+// map's logarithm less the level of a mean floor. The map's variance is trace(M C).
+MatrixXd map_moments(const FitObjective& objective, const FitPoint& point) {
+    const FitModel model = objective.model_at(point.x);
+    const Index count = point.x.size();
+    const auto q = static_cast<double>(objective.channels());
+    MatrixXd sum = MatrixXd::Zero(count, count);
+    MatrixXd level = MatrixXd::Zero(static_cast<Index>(objective.channels()), count);
     double blocks = 0.0;
     const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
     for (std::size_t i = 0; i < point.pose.size(); i += apart) {
-        const ImageView view = objective.view(point, state, light, i);
-        mean += static_cast<double>(view.blocks) * view.level_slopes.leftCols(point.x.size());
+        const ImageView view = objective.view(point, model, i);
+        const auto slopes = view.rows.middleCols(1, count);  // 0 of blocks that do not count
+        sum += slopes.transpose() * slopes;
+        level += static_cast<double>(view.blocks) * view.level.middleCols(1, count);
         blocks += static_cast<double>(view.blocks);
-        for (Index row = 0; row < view.slopes.rows(); ++row)
-            if (std::isfinite(view.residual(row)))
-                slopes.emplace_back(view.slopes.row(row).head(point.x.size()));
     }
-    mean /= std::max(blocks, 1.0);
-    for (std::size_t row = 0; row < slopes.size(); ++row)
-        slopes[row] -= mean.row(static_cast<Index>(row) % q);
-    return slopes;
-}
-
-double mean_variance(const std::vector<RowVectorXd>& slopes, const MatrixXd& covariance) {
-    double sum = 0.0;
-    for (const RowVectorXd& row : slopes) sum += row.dot(covariance * row.transpose());
-    return sum / std::max(1.0, static_cast<double>(slopes.size()));
+    blocks = std::max(blocks, 1.0);
+    return (sum - level.transpose() * level / blocks) / (q * blocks);
 }
 
 // By number, for one split: squared differences of its halves over their predicted variances,
@@ -114,8 +106,8 @@ VectorXd by_word(const FitProblem& problem, const VectorXd& squares) {
 }  // namespace
 
 double dispersion_at(const FitObjective& objective, const FitPoint& point) {
-    if (objective.counted(point).size() < kFewestImages) return point.dispersion;
     const Sandwich of = sandwich_at(objective, point);
+    if (of.images < kFewestImages) return point.dispersion;
     // S at the point is divided by the point's own dispersion.
     return std::max(1.0,
                     point.dispersion * (of.inverse * of.scores).trace() /
@@ -145,11 +137,14 @@ FitErrors errors_of(const FitObjective& objective,
     const auto count = std::ssize(problem.numbers);
     const MatrixXd keep = without_common_power(problem, powers);
     const Sandwich sandwich = sandwich_at(objective, point);
-    const std::vector<RowVectorXd> slopes = map_slopes(objective, point);
-    const bool are_few = objective.counted(point).size() < kFewestImages;
+    const MatrixXd M = map_moments(objective, point);
+    const auto map_variance = [&](const MatrixXd& covariance) {
+        return std::max(0.0, (M * covariance).trace());
+    };
+    const bool are_few = sandwich.images < kFewestImages;
     const MatrixXd C = are_few ? sandwich.inverse : sandwich.covariance();
     FitErrors errors{.covariance = keep * C.topLeftCorner(count, count) * keep.transpose(),
-                     .unevenness = std::sqrt(mean_variance(slopes, C))};
+                     .unevenness = std::sqrt(map_variance(C))};
     if (are_few) return errors;
     const MatrixXd wanted = sandwich.of_halves();
     // Halves do not differ in numbers that no image shows, such as the aim of a lamp that is off.
@@ -157,15 +152,14 @@ FitErrors errors_of(const FitObjective& objective,
     const VectorXd variances = (keep * wanted.topLeftCorner(count, count) * keep.transpose())
                                    .diagonal()
                                    .cwiseMax(kNothing);
-    const double map_variance = std::max(mean_variance(slopes, wanted), kNothing);
+    const double expected = std::max(map_variance(wanted), kNothing);
     VectorXd log_squares = VectorXd::Zero(count);
     double map_log_square = 0.0;
     for (std::size_t split = 0; split < kSplits; ++split) {
         const VectorXd apart = half(split, 1).x - half(split, 0).x;
         const VectorXd squares = (keep * apart.head(count)).cwiseAbs2().cwiseQuotient(variances);
         log_squares.array() += by_word(problem, squares).array().log() / kSplits;
-        map_log_square +=
-            std::log(mean_variance(slopes, apart * apart.transpose()) / map_variance) / kSplits;
+        map_log_square += std::log(map_variance(apart * apart.transpose()) / expected) / kSplits;
     }
     VectorXd F = (0.5 * log_squares).array().exp().max(1.0);
     for (Index k = 0; k < count; ++k)

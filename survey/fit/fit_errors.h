@@ -40,7 +40,7 @@
 
 namespace aphotic {
 
-inline constexpr std::size_t kFewestImages = 16;
+inline constexpr std::ptrdiff_t kFewestImages = 16;
 // The weight of all numbers together against a word's own numbers.
 inline constexpr double kOfAll = 3.0;
 inline constexpr std::size_t kSplits = 2;

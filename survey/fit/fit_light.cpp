@@ -24,76 +24,45 @@ namespace aphotic {
 namespace {
 
 using Eigen::Index;
-using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr double kNear_m = 1e-6;  // least distance of a lamp from a ray
-constexpr double kStep = 1e-6;    // of central differences computed once per image
 
 // Order: altitude, pitch and roll, then the aim along and across.
 constexpr int kPose = FitLight::kPose;
 constexpr int kAim = kPose;
 using Jet = ceres::Jet<double, kAim + 2>;
 
-// A vector and its slope over one of the Jet's numbers.
-void add_slope(const Vector3d& slope, int by, Vector3<Jet>& of) {
-    for (Index k = 0; k < 3; ++k) of(k).v(by) += slope(k);
-}
+using FloorJet = BasicPlane<Jet>;
 
-struct FloorJet {
-    Vector3<Jet> point_m;
-    Vector3<Jet> normal;
-};
 FloorJet fixed(const Plane& floor) {
     return {.point_m = floor.point_m.cast<Jet>(), .normal = floor.normal.cast<Jet>()};
-}
-FloorJet floor_of(const Sled& sled) {
-    FloorJet jet = fixed(floor_plane(sled));
-    for (int k = 0; k < FitLight::kPose; ++k) {
-        const auto moved = [&](double step) {
-            Sled other = sled;
-            (k == 0 ? other.altitude_m : k == 1 ? other.pitch_rad : other.roll_rad) += step;
-            return floor_plane(other);
-        };
-        const Plane more = moved(kStep);
-        const Plane less = moved(-kStep);
-        add_slope((more.point_m - less.point_m) / (2.0 * kStep), k, jet.point_m);
-        add_slope((more.normal - less.normal) / (2.0 * kStep), k, jet.normal);
-    }
-    return jet;
-}
-
-Matrix3d into_frame(const Rig& rig, const std::array<double, 2>& aim_rad, std::size_t strobe) {
-    const BeamFrame frame = frame_about(aimed_axis(rig, aim_rad, strobe));
-    Matrix3d rows;
-    rows << frame.along.transpose(), frame.across.transpose(), frame.axis.transpose();
-    return rows;
 }
 
 Jet height_above(const FloorJet& floor, const Vector3d& point_m) {
     return floor.normal.dot(point_m.cast<Jet>() - floor.point_m);
 }
 
+template <typename T>
+Vector3<T> aimed(const Vector3d& axis, const T& along_rad, const T& across_rad) {
+    using std::tan;
+    const BeamFrame frame = frame_about(axis);
+    return (frame.axis.cast<T>() + tan(along_rad) * frame.along.cast<T>() +
+            tan(across_rad) * frame.across.cast<T>())
+        .normalized();
+}
+
 struct LampJet {
     Vector3d position_m;
     Eigen::Matrix<Jet, 3, 3> into_frame;
 };
-LampJet lamp_of(const Rig& rig, const FitState& state, std::size_t strobe) {
-    LampJet lamp{.position_m = rig.strobes[strobe].position_m, .into_frame = {}};
-    std::array<double, 2> aim_rad = state.aim_rad[strobe];
-    lamp.into_frame = into_frame(rig, aim_rad, strobe).cast<Jet>();
-    for (std::size_t k = 0; k < 2; ++k) {
-        const double was = aim_rad[k];
-        aim_rad[k] = was + kStep;
-        const Matrix3d more = into_frame(rig, aim_rad, strobe);
-        aim_rad[k] = was - kStep;
-        const Matrix3d slope = (more - into_frame(rig, aim_rad, strobe)) / (2.0 * kStep);
-        aim_rad[k] = was;
-        for (Index row = 0; row < 3; ++row)
-            for (Index column = 0; column < 3; ++column)
-                lamp.into_frame(row, column).v(kAim + static_cast<int>(k)) = slope(row, column);
-    }
+LampJet lamp_of(const Strobe& strobe, const std::array<double, 2>& aim_rad) {
+    const auto frame =
+        frame_about<Jet>(aimed(strobe.axis, Jet(aim_rad[0], kAim), Jet(aim_rad[1], kAim + 1)));
+    LampJet lamp{.position_m = strobe.position_m, .into_frame = {}};
+    lamp.into_frame << frame.along.transpose(), frame.across.transpose(), frame.axis.transpose();
     return lamp;
 }
 
@@ -104,42 +73,45 @@ BasicFloorRay<Jet> ray_to(const FloorJet& floor, const WaterRay& ray) {
             .height_m = height_above(floor, ray.origin_m)};
 }
 
-// A 24th of second differences, each way; extrapolated linearly at the border.
-Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
-    const auto across = static_cast<Index>(places.across());
-    const auto down = static_cast<Index>(places.down());
-    const auto size = static_cast<Index>(places.size());
-    std::vector<Eigen::Triplet<double>> shares;
-    for (Index place = 0; place < size; ++place) {
-        shares.emplace_back(place, place, 1.0);
-        const auto add = [&](Index at, Index count, Index apart) {
-            if (places.block_px < 2 || count < 4) return;
-            const auto difference = [&](Index of, double share) {
-                const Index middle = place + (of - at) * apart;
-                shares.emplace_back(place, middle - apart, share / 24.0);
-                shares.emplace_back(place, middle, -2.0 * share / 24.0);
-                shares.emplace_back(place, middle + apart, share / 24.0);
-            };
-            const Index inner = std::clamp<Index>(at, 1, count - 2);
-            if (inner == at) return difference(at, 1.0);
-            difference(inner, 2.0);
-            difference(2 * inner - at, -1.0);
-        };
-        add(place % across, across, 1);
-        add(place / across, down, across);
+using Rows = BlockLight::Rows;
+using GridShares = FitLight::Grids::Shares;
+
+// Means over the blocks along a line from the values at their middles, extrapolated linearly at
+// both ends.
+GridShares means_over_blocks(std::size_t blocks, int block_px) {
+    const auto count = static_cast<Index>(blocks);
+    MatrixXd bend = MatrixXd::Zero(count, count);
+    if (block_px >= 2 && count >= 4) {
+        for (Index k = 1; k + 1 < count; ++k) bend.row(k).segment<3>(k - 1) << 1.0, -2.0, 1.0;
+        bend.row(0) = 2.0 * bend.row(1) - bend.row(2);
+        bend.row(count - 1) = 2.0 * bend.row(count - 2) - bend.row(count - 3);
     }
-    Eigen::SparseMatrix<double, Eigen::RowMajor> means(size, size);
-    means.setFromTriplets(shares.begin(), shares.end());
-    return means;
+    return (MatrixXd::Identity(count, count) + bend / 24.0).sparseView();
 }
 
-// Applies it to all rows of a place together.
-void apply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& shares,
-           const BlockLight::Rows& from,
-           BlockLight::Rows& to) {
-    const Index columns = kChannels * from.cols();
-    Eigen::Map<BlockLight::Rows>(to.data(), shares.rows(), columns).noalias() +=
-        shares * Eigen::Map<const BlockLight::Rows>(from.data(), shares.cols(), columns);
+// At the middles of blocks along a side of the image, from the veil's nodes.
+GridShares from_nodes(std::size_t blocks, int block_px, int size_px) {
+    MatrixXd shares(static_cast<Index>(blocks), kTilePoints);
+    for (Index k = 0; k < shares.rows(); ++k) {
+        const auto of_nodes =
+            chebyshev_shares((2.0 * static_cast<double>(k) + 1.0) * block_px / size_px - 1.0);
+        shares.row(k) = Eigen::RowVectorXd::Map(of_nodes.data(), kTilePoints);
+    }
+    return shares.sparseView();
+}
+
+void add_to_grid(const FitLight::Grids& grids, const Rows& from, Rows& to) {
+    const Index numbers = kChannels * from.cols();  // of a place
+    const Index across = grids.along.rows();
+    Rows of_rows(grids.down.cols() * across, numbers);
+    for (Index j = 0; j < grids.down.cols(); ++j) {
+        const Index first = j * grids.along.cols();
+        of_rows.middleRows(j * across, across) =
+            grids.along *
+            Eigen::Map<const Rows>(from.data() + first * numbers, grids.along.cols(), numbers);
+    }
+    Eigen::Map<Rows>(to.data(), grids.down.rows(), across * numbers) +=
+        grids.down * Eigen::Map<const Rows>(of_rows.data(), grids.down.cols(), across * numbers);
 }
 
 double mean_wavelength_nm(const Camera& camera, std::size_t channel) {
@@ -154,10 +126,6 @@ double mean_wavelength_nm(const Camera& camera, std::size_t channel) {
 }
 
 }  // namespace
-
-std::size_t FitPlaces::across() const {
-    return static_cast<std::size_t>(std::ranges::count(rows, rows.front()));
-}
 
 std::vector<double> powers_in(const FitState& state, const Rig& rig) {
     std::vector<double> powers;
@@ -197,9 +165,7 @@ double& number_in(FitState& state, const FitPlaceInState& at) {
 }
 
 Vector3d aimed_axis(const Rig& rig, const std::array<double, 2>& aim_rad, std::size_t strobe) {
-    const BeamFrame frame = frame_about(rig.strobes[strobe].axis);
-    return (frame.axis + std::tan(aim_rad[0]) * frame.along + std::tan(aim_rad[1]) * frame.across)
-        .normalized();
+    return aimed(rig.strobes[strobe].axis, aim_rad[0], aim_rad[1]);
 }
 
 namespace {
@@ -216,9 +182,9 @@ class Scene {
           const std::vector<Plane>& planes)
         : state_(state),
           light_(light),
-          floor_(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
-                           .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
-                           .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          floor_(floor_plane(Jet(sled.altitude_m + state.offset.altitude_m, 0),
+                             Jet(sled.pitch_rad + state.offset.pitch_rad, 1),
+                             Jet(sled.roll_rad + state.offset.roll_rad, 2))),
           planes_(planes),
           pose_(std::ssize(numbers)) {
         const auto column_of = [&](const FitPlaceInState& at) -> Index {
@@ -226,7 +192,7 @@ class Scene {
             return found == numbers.end() ? kHeld : found - numbers.begin();
         };
         for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-            lamps_.push_back(lamp_of(rig, state, s));
+            lamps_.push_back(lamp_of(rig.strobes[s], state.aim_rad[s]));
             aims_.push_back({column_of({FitPart::Aim, s, 0}), column_of({FitPart::Aim, s, 1})});
             powers_.push_back(column_of({FitPart::Power, s}));
             beams_.push_back(column_of({FitPart::Beam, state.beam_of[s]}));
@@ -272,7 +238,7 @@ class Scene {
              const OfBeam& beam,
              const Jet& factor,
              const std::vector<double>& by_version,
-             BlockLight::Rows::RowXpr row) const {
+             Rows::RowXpr row) const {
         const Jet value = beam.intensity * factor;
         row(of_all()) += value.a;
         if (lit.is_floor) row(of_floor()) += value.a;
@@ -306,9 +272,7 @@ class Scene {
     std::vector<Index> versions_;
 };
 
-void light_floor(const Scene& scene,
-                 const std::vector<FitLight::Rays>& places,
-                 BlockLight::Rows& rows) {
+void light_floor(const Scene& scene, const std::vector<FitLight::Rays>& places, Rows& rows) {
     const FitState& state = scene.state();
     Scene::Lit lit{.is_floor = true, .w = {}};
     Scene::OfBeam beam;
@@ -352,9 +316,7 @@ void light_floor(const Scene& scene,
     }
 }
 
-void light_water(const Scene& scene,
-                 const std::vector<FitLight::Rays>& nodes,
-                 BlockLight::Rows& of_nodes) {
+void light_water(const Scene& scene, const std::vector<FitLight::Rays>& nodes, Rows& of_nodes) {
     using Gauss = boost::math::quadrature::gauss<double, kFitVeilPoints>;
     const PathLight& light = scene.light();
     Scene::Lit lit;
@@ -424,7 +386,7 @@ void light_water(const Scene& scene,
 void apply_vignetting(const FitState& state,
                       const std::vector<FitPlaceInState>& numbers,
                       const std::vector<FitLight::Sight>& sights,
-                      BlockLight::Rows& rows) {
+                      Rows& rows) {
     const Index all = rows.cols() - 1;
     for (std::size_t place = 0; place < sights.size(); ++place) {
         const FitLight::Sight& sight = sights[place];
@@ -452,7 +414,10 @@ void apply_vignetting(const FitState& state,
 }  // namespace
 
 FitLight::FitLight(const Rig& rig, const FitPlaces& places)
-    : rig_(rig), places_(places), means_(means_over_blocks(places)) {
+    : rig_(rig),
+      places_(places),
+      means_{.along = means_over_blocks(places.across(), places.block_px),
+             .down = means_over_blocks(places.down(), places.block_px)} {
     const Camera& camera = rig.camera;
     std::vector<double> lambda_nm{0.5 * (camera.range.first_nm + camera.range.last_nm)};
     if (disperses(rig)) {
@@ -466,43 +431,21 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places)
         return rays;
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const double column = places.columns[i];
-        const double row = places.rows[i];
+        const double column = places.column(i);
+        const double row = places.row(i);
         rays_.push_back(rays_at(column, row));
         sights_.push_back({.from_middle2 = radial_square(camera, column, row),
                            .cosine = direction_in_air(camera, column, row).z(),
                            .vignetting = vignetting_at(camera, column, row)});
     }
     if (!rig.water.scatters()) return;
-    // From -1 to 1 over the image.
-    const auto along = [](double place, int size_px) { return 2.0 * place / size_px - 1.0; };
     for (int j = 0; j < kTilePoints; ++j) {
         for (int i = 0; i < kTilePoints; ++i)
             veil_nodes_.push_back(rays_at(0.5 * camera.width_px * (1.0 + chebyshev_point(i)),
                                           0.5 * camera.height_px * (1.0 + chebyshev_point(j))));
     }
-    // First along the image's rows of nodes, then down its columns of places.
-    const auto across = static_cast<Index>(places.across());
-    std::vector<Eigen::Triplet<double>> shares;
-    for (Index i = 0; i < across; ++i) {
-        const auto x =
-            chebyshev_shares(along(places.columns[static_cast<std::size_t>(i)], camera.width_px));
-        for (Index j = 0; j < kTilePoints; ++j)
-            for (Index k = 0; k < kTilePoints; ++k)
-                shares.emplace_back(
-                    j * across + i, j * kTilePoints + k, x[static_cast<std::size_t>(k)]);
-    }
-    along_rows_.resize(kTilePoints * across, std::ssize(veil_nodes_));
-    along_rows_.setFromTriplets(shares.begin(), shares.end());
-    shares.clear();
-    for (Index place = 0; place < std::ssize(places.rows); ++place) {
-        const auto y =
-            chebyshev_shares(along(places.rows[static_cast<std::size_t>(place)], camera.height_px));
-        for (Index j = 0; j < kTilePoints; ++j)
-            shares.emplace_back(place, j * across + place % across, y[static_cast<std::size_t>(j)]);
-    }
-    down_columns_.resize(std::ssize(places.rows), along_rows_.rows());
-    down_columns_.setFromTriplets(shares.begin(), shares.end());
+    veil_ = {.along = from_nodes(places.across(), places.block_px, camera.width_px),
+             .down = from_nodes(places.down(), places.block_px, camera.height_px)};
 }
 
 BlockLight FitLight::at(const FitState& state,
@@ -512,7 +455,6 @@ BlockLight FitLight::at(const FitState& state,
                         const std::vector<Plane>& planes) const {
     const Scene scene(rig_, state, light, sled, numbers, planes);
     const auto rows = static_cast<Index>(kChannels * places_.size());
-    using Rows = BlockLight::Rows;
     Rows middles = Rows::Zero(rows, scene.of_all() + 1);
     light_floor(scene, rays_, middles);
     if (light.scatterers() > 0 && scene.has_planes()) {
@@ -520,9 +462,7 @@ BlockLight FitLight::at(const FitState& state,
     } else if (light.scatterers() > 0) {
         Rows of_nodes = Rows::Zero(kChannels * std::ssize(veil_nodes_), middles.cols());
         light_water(scene, veil_nodes_, of_nodes);
-        Rows of_rows = Rows::Zero(kChannels * along_rows_.rows(), middles.cols());
-        apply(along_rows_, of_nodes, of_rows);
-        apply(down_columns_, of_rows, middles);
+        add_to_grid(veil_, of_nodes, middles);
     }
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         const auto column = static_cast<Index>(k);
@@ -535,7 +475,7 @@ BlockLight FitLight::at(const FitState& state,
     Rows means = middles;
     if (!scene.has_planes()) {
         means.setZero();
-        apply(means_, middles, means);
+        add_to_grid(means_, middles, means);
     }
     BlockLight found;
     const Eigen::VectorXd all = means.col(scene.of_all());

@@ -21,8 +21,8 @@
 // angle at the lamp, at the Chebyshev points of light/tile_fit.h with the image as one tile. Its
 // change with the sled's pose is neglected: it is small, and so are the pose offsets.
 //
-// The mean over a block is the value at its middle plus a 24th of the second differences of middles
-// each way: exact for cubics.
+// The mean over a block is, each way, the value at its middle plus a 24th of the second differences
+// of middles: exact for cubics.
 //
 // Alternatively, blocks have planes of their own (block_planes.h). These do not move with the pose,
 // the veil is integrated up to each of them, and the mean over a block is the value at its middle,
@@ -40,6 +40,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -54,12 +55,20 @@ struct FitPlaces {
     int width_px = 0;
     int height_px = 0;
     int block_px = 1;
-    std::vector<double> columns{};
-    std::vector<double> rows{};
 
-    [[nodiscard]] std::size_t size() const { return columns.size(); }
-    [[nodiscard]] std::size_t across() const;
-    [[nodiscard]] std::size_t down() const { return size() / across(); }
+    [[nodiscard]] std::size_t across() const {
+        return static_cast<std::size_t>(std::max(1, width_px / block_px));
+    }
+    [[nodiscard]] std::size_t down() const {
+        return static_cast<std::size_t>(std::max(1, height_px / block_px));
+    }
+    [[nodiscard]] std::size_t size() const { return across() * down(); }
+    [[nodiscard]] double column(std::size_t place) const {
+        return (static_cast<double>(place % across()) + 0.5) * block_px;
+    }
+    [[nodiscard]] double row(std::size_t place) const {
+        return (static_cast<double>(place / across()) + 0.5) * block_px;
+    }
 };
 
 // An image or a map as blocks.
@@ -143,6 +152,13 @@ class FitLight {
         double vignetting = 1.0;    // the rig's own
     };
 
+    // Values on one grid from those on another: a matrix along its rows, and one down its columns.
+    struct Grids {
+        using Shares = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+        Shares along;
+        Shares down;
+    };
+
   private:
     // use(ray, strobe, what it shows)
     template <typename Use>
@@ -153,9 +169,8 @@ class FitLight {
     std::vector<Rays> rays_;  // by place
     std::vector<Sight> sights_;
     std::vector<Rays> veil_nodes_;
-    Eigen::SparseMatrix<double, Eigen::RowMajor> along_rows_;  // of the nodes, to columns of places
-    Eigen::SparseMatrix<double, Eigen::RowMajor> down_columns_;
-    Eigen::SparseMatrix<double, Eigen::RowMajor> means_;  // by place and place
+    Grids veil_;   // from the nodes to the places
+    Grids means_;  // from the middles of blocks
 };
 
 }  // namespace aphotic

@@ -52,29 +52,16 @@ struct Cells {
     Index across;
     Index down;
     Index q;
-    VectorXd residual;  // NaN where missing
-    BlockLight::Rows slopes;
-
-    Cells(const ImageView& view, Index channels, const FitPlaces& places)
-        : across(static_cast<Index>(places.across())),
-          down(static_cast<Index>(places.down())),
-          q(channels),
-          residual(view.residual),
-          slopes(view.slopes) {}
-    Cells(Index wide, Index high, Index channels, Index columns)
-        : across(wide),
-          down(high),
-          q(channels),
-          residual(
-              VectorXd::Constant(wide * high * channels, std::numeric_limits<double>::quiet_NaN())),
-          slopes(BlockLight::Rows::Zero(wide * high * channels, columns)) {}
+    BlockLight::Rows rows;  // an ImageView's
 
     // The means of 2 x 2 cells; `take` receives the three details where all four have a mean. An
     // odd last row or column is dropped.
     template <typename Take>
     [[nodiscard]] Cells halved(const Take& take) const {
-        Cells half(across / 2, down / 2, q, slopes.cols());
-        BlockLight::Rows detail(q, slopes.cols());
+        Cells half{across / 2, down / 2, q, {}};
+        half.rows.setConstant(
+            half.across * half.down * q, rows.cols(), std::numeric_limits<double>::quiet_NaN());
+        BlockLight::Rows sum(q, rows.cols());
         // Right less left, lower less upper, and across.
         constexpr std::array<std::array<double, 4>, 3> kSigns{
             {{-1.0, 1.0, -1.0, 1.0}, {-1.0, -1.0, 1.0, 1.0}, {1.0, -1.0, -1.0, 1.0}}};
@@ -83,26 +70,19 @@ struct Cells {
             const std::array<Index, 4> parts{
                 first, first + q, first + across * q, first + (across + 1) * q};
             double seen = 0.0;
-            VectorXd sum = VectorXd::Zero(q);
-            auto mean = half.slopes.middleRows(cell * q, q);
+            sum.setZero();
             for (const Index part : parts) {
-                if (!residual.segment(part, q).allFinite()) continue;
+                if (!rows.col(0).segment(part, q).allFinite()) continue;
                 seen += 1.0;
-                sum += residual.segment(part, q);
-                mean += slopes.middleRows(part, q);
+                sum += rows.middleRows(part, q);
             }
-            if (seen == 0.0) continue;
-            half.residual.segment(cell * q, q) = sum / seen;
-            mean /= seen;
+            if (seen > 0.0) half.rows.middleRows(cell * q, q) = sum / seen;
             if (seen < 4.0) continue;
             for (const auto& signs : kSigns) {
-                VectorXd d = VectorXd::Zero(q);
-                detail.setZero();
-                for (std::size_t k = 0; k < parts.size(); ++k) {
-                    d += 0.5 * signs[k] * residual.segment(parts[k], q);
-                    detail += 0.5 * signs[k] * slopes.middleRows(parts[k], q);
-                }
-                take(d, detail);
+                sum.setZero();
+                for (std::size_t k = 0; k < parts.size(); ++k)
+                    sum += 0.5 * signs[k] * rows.middleRows(parts[k], q);
+                take(sum);
             }
         }
         return half;
@@ -170,40 +150,38 @@ FitObjective::FitObjective(const RigText& rig,
     while ((std::min(across, down) >> (levels_ + 1)) > 0) ++levels_;
 }
 
-PathLight FitObjective::path_light(const FitState& state) const {
-    return {rig_, state.water, state.tint, paths_};
+FitModel FitObjective::model_at(const VectorXd& x) const {
+    const FitState state = problem_.state_at(x.head(std::ssize(problem_.numbers)));
+    return {state, {rig_, state.water, state.tint, paths_}};
 }
 
 ImageView FitObjective::view(const FitPoint& point,
-                             const FitState& state,
-                             const PathLight& light,
+                             const FitModel& model,
                              std::size_t image) const {
     Sled sled = samples_.images[image].sled;
     const Vector3d& off = point.pose[image];
     sled.altitude_m += off.x();
     sled.pitch_rad += off.y();
     sled.roll_rad += off.z();
-    return view_of(point, state, light, sled, &samples_.images[image]);
+    return view_of(point, model, sled, &samples_.images[image]);
 }
 
 // Without an image the residual is 0, on the sled's plane.
 ImageView FitObjective::view_of(const FitPoint& point,
-                                const FitState& state,
-                                const PathLight& light,
+                                const FitModel& model,
                                 const Sled& sled,
                                 const FitImage* image) const {
-    ImageView view{.light = light_.at(state,
-                                      light,
+    ImageView view{.light = light_.at(model.state,
+                                      model.light,
                                       sled,
                                       problem_.places(),
                                       image == nullptr ? std::vector<Plane>() : image->planes)};
     const auto q = static_cast<Index>(channels_);
     const auto numbers = std::ssize(problem_.numbers);
     const auto places = static_cast<Index>(samples_.places.size());
-    view.residual.setConstant(places * q, std::numeric_limits<double>::quiet_NaN());
-    view.slopes.setZero(places * q, numbers + q + kPoseNumbers);
-    view.level.setZero(q);
-    view.level_slopes.setZero(q, view.slopes.cols());
+    view.rows.setZero(places * q, 1 + numbers + q + kPoseNumbers);
+    view.rows.col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+    view.level.setZero(q, view.rows.cols());
     double brightest = -std::numeric_limits<double>::infinity();
     for (const double logarithm : view.light.logarithm)
         if (logarithm > brightest) brightest = logarithm;  // false for NaN
@@ -215,28 +193,21 @@ ImageView FitObjective::view_of(const FitPoint& point,
         VectorXd off(q);
         for (Index c = 0; c < q; ++c) {
             const Index row = place * kChannels + c;
-            const double model = view.light.logarithm(row);
+            const double lit = view.light.logarithm(row);
             const double seen =
                 image == nullptr ? 0.0 : image->signal[static_cast<std::size_t>(row)];
-            off(c) = image == nullptr ? 0.0 : std::log(seen) - model - point.x(numbers + c);
-            if (!(model > darkest) || (image != nullptr && !(seen > 0.0)))
+            off(c) = image == nullptr ? 0.0 : std::log(seen) - lit - point.x(numbers + c);
+            if (!(lit > darkest) || (image != nullptr && !(seen > 0.0)))
                 off(c) = std::numeric_limits<double>::quiet_NaN();
         }
         if (!off.allFinite()) continue;
-        view.residual.segment(place * q, q) = off;
-        auto rows = view.slopes.middleRows(place * q, q);
-        rows.leftCols(numbers) =
-            view.light.slopes.middleRows(place * kChannels, q) * slope.asDiagonal();
-        rows.middleCols(numbers, q).setIdentity();
-        rows.rightCols(kPoseNumbers) = view.light.by_pose.middleRows(place * kChannels, q);
-        view.level += off;
-        view.level_slopes += rows;
+        auto rows = view.rows.middleRows(place * q, q);
+        rows << off, view.light.slopes.middleRows(place * kChannels, q) * slope.asDiagonal(),
+            MatrixXd::Identity(q, q), view.light.by_pose.middleRows(place * kChannels, q);
+        view.level += rows;
         ++view.blocks;
     }
-    if (view.blocks > 0) {
-        view.level /= static_cast<double>(view.blocks);
-        view.level_slopes /= static_cast<double>(view.blocks);
-    }
+    if (view.blocks > 0) view.level /= static_cast<double>(view.blocks);
     return view;
 }
 
@@ -245,8 +216,8 @@ ImageTerms FitObjective::terms_of(const ImageView& view,
                                   const Vector3d& pose,
                                   Curvature curvature) const {
     const auto q = static_cast<Index>(channels_);
-    const Index columns = view.slopes.cols();
-    const Index kept = columns - kPoseNumbers;
+    const Index columns = view.rows.cols();
+    const Index kept = columns - 1 - kPoseNumbers;
     ImageTerms terms{.H = MatrixXd::Zero(kept, kept),
                      .g = VectorXd::Zero(kept),
                      .pose_answer = MatrixXd::Zero(kPoseNumbers, kept + 1),
@@ -259,84 +230,72 @@ ImageTerms FitObjective::terms_of(const ImageView& view,
     BlockLight::Rows rows(most, columns);  // times the root of their weights
     BlockLight::Rows bends(most / q, columns);
     Index used = 0;
-    VectorXd g = VectorXd::Zero(columns);
     BlockLight::Rows white(q, columns);
     const auto add = [&](const Weighed& weighed,
                          const MatrixXd& W,
-                         const VectorXd& d,
-                         const BlockLight::Rows& slopes,
+                         const BlockLight::Rows& mean,
                          MatrixXd& moments,
                          double& weights) {
-        white.noalias() = W * slopes;
-        const VectorXd off = W * d;
+        white.noalias() = W * mean;
+        const VectorXd off = white.col(0);
         const double w = weighed.weight(off);
         rows.middleRows(used * q, q) = std::sqrt(w) * white;
-        const VectorXd along = white.transpose() * off;
-        g += w * along;
-        bends.row(used) = weighed.bend(w) * along.transpose();
-        moments += w * d * d.transpose();
+        bends.row(used) = weighed.bend(w) * off.transpose() * white;
+        moments += w * mean.col(0) * mean.col(0).transpose();
         weights += w;
         ++used;
     };
     add(levels,
         whitening(point.texture.level),
         view.level,
-        view.level_slopes,
         terms.moments.level,
         terms.weights.back());
 
-    Cells cells(view, q, samples_.places);
+    Cells cells{static_cast<Index>(samples_.places.across()),
+                static_cast<Index>(samples_.places.down()),
+                q,
+                view.rows};
     for (std::size_t level = 0; level < levels_; ++level) {
         const MatrixXd W = whitening(point.texture.details[level]);
-        cells = cells.halved([&](const VectorXd& d, const BlockLight::Rows& slopes) {
-            add(details, W, d, slopes, terms.moments.details[level], terms.weights[level]);
+        cells = cells.halved([&](const BlockLight::Rows& detail) {
+            add(details, W, detail, terms.moments.details[level], terms.weights[level]);
         });
     }
     rows.conservativeResize(used * q, columns);
     bends.conservativeResize(used, columns);
+    bends.col(0).setZero();
     MatrixXd H = MatrixXd::Zero(columns, columns);
     H.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
     if (curvature == Curvature::Observed)
         H.selfadjointView<Eigen::Lower>().rankUpdate(bends.transpose(), -1.0);
     H = H.selfadjointView<Eigen::Lower>();
     H /= point.dispersion;
-    g /= point.dispersion;
-    terms.H = H.topLeftCorner(kept, kept);
-    terms.g = g.head(kept);
-    if (!pose_weight_.allFinite()) return terms;
-    // The pose is eliminated.
-    const Eigen::Matrix3d own =
-        H.bottomRightCorner<3, 3>() + Eigen::Matrix3d(pose_weight_.asDiagonal());
-    MatrixXd other(kPoseNumbers, kept + 1);
-    other << g.tail<3>() - pose_weight_.cwiseProduct(pose), H.bottomLeftCorner(kPoseNumbers, kept);
-    terms.pose_answer = own.ldlt().solve(other);
-    terms.H -= H.topRightCorner(kept, kPoseNumbers) * terms.pose_answer.rightCols(kept);
-    terms.g -= H.topRightCorner(kept, kPoseNumbers) * terms.pose_answer.col(0);
+    // The residual's column is the gradient; the pose is eliminated.
+    MatrixXd known = H.block(1, 0, kept, 1 + kept);
+    if (pose_weight_.allFinite()) {
+        MatrixXd other = H.bottomLeftCorner(kPoseNumbers, 1 + kept);
+        other.col(0) -= pose_weight_.cwiseProduct(pose);
+        const Eigen::Matrix3d own =
+            H.bottomRightCorner<3, 3>() + Eigen::Matrix3d(pose_weight_.asDiagonal());
+        terms.pose_answer = own.ldlt().solve(other);
+        known -= H.block(1, 1 + kept, kept, kPoseNumbers) * terms.pose_answer;
+    }
+    terms.g = known.col(0);
+    terms.H = known.rightCols(kept);
     return terms;
 }
 
 std::vector<ImageTerms> FitObjective::terms_at(const FitPoint& point, Curvature curvature) const {
-    const FitState state = state_at(point);
-    const PathLight light = path_light(state);
+    const FitModel model = model_at(point.x);
     std::vector<ImageTerms> terms(samples_.images.size());
     parallel_for(terms.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-        terms[i] = terms_of(view(point, state, light, i), point, point.pose[i], curvature);
+        terms[i] = terms_of(view(point, model, i), point, point.pose[i], curvature);
     });
     return terms;
 }
 
-std::vector<std::size_t> FitObjective::counted(const FitPoint& point) const {
-    const FitState state = state_at(point);
-    const PathLight light = path_light(state);
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < samples_.images.size(); ++i)
-        if (counts(view(point, state, light, i))) found.push_back(i);
-    return found;
-}
-
 MatrixXd FitObjective::information_at(const FitPoint& point, const Sled& sled) const {
-    const FitState state = state_at(point);
-    const ImageView view = view_of(point, state, path_light(state), sled, nullptr);
+    const ImageView view = view_of(point, model_at(point.x), sled, nullptr);
     return terms_of(view, point, Vector3d::Zero(), Curvature::Expected).H;
 }
 
@@ -383,14 +342,13 @@ FitPoint FitObjective::first_point() const {
                    .pose = std::vector<Vector3d>(samples_.images.size(), Vector3d::Zero()),
                    .texture = {{levels_, kFirstTexture * kFirstTexture * MatrixXd::Identity(q, q)},
                                MatrixXd::Identity(q, q)}};
-    const FitState state = state_at(point);
-    const PathLight light = path_light(state);
+    const FitModel model = model_at(point.x);
     VectorXd level = VectorXd::Zero(q);
     double images = 0.0;
     for (std::size_t i = 0; i < samples_.images.size(); ++i) {
-        const ImageView seen = view(point, state, light, i);
+        const ImageView seen = view(point, model, i);
         if (!counts(seen)) continue;
-        level += seen.level;
+        level += seen.level.col(0);
         images += 1.0;
     }
     if (images == 0.0)

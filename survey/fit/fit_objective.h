@@ -79,13 +79,19 @@ struct FitPoint {
     double dispersion = kFirstDispersion;
 };
 
-// An image at a point: its blocks' logarithms less the model's, and the model's slopes.
+// The rig at a point, and its light by path.
+struct FitModel {
+    FitState state;
+    PathLight light;
+};
+
+// An image at a point. Columns: the residual, that is its blocks' logarithms less the model's, then
+// the model's slopes over the point's x, then those over the pose.
 struct ImageView {
     BlockLight light;
-    Eigen::VectorXd residual{};  // by place, then channel; NaN where a block does not count
-    BlockLight::Rows slopes{};   // over the point's x, then the pose
-    Eigen::VectorXd level{};     // mean of the residual, by channel
-    BlockLight::Rows level_slopes{};
+    BlockLight::Rows
+        rows{};  // by place, then channel; residuals are NaN of blocks that do not count
+    BlockLight::Rows level{};  // their mean, by channel
     std::size_t blocks = 0;
 };
 
@@ -117,8 +123,6 @@ class FitObjective {
                                   double nearness,
                                   const std::function<void(int round)>& progress) const;
 
-    // The images with enough lit and observed blocks, at a point.
-    [[nodiscard]] std::vector<std::size_t> counted(const FitPoint& point) const;
     // By image, at a point.
     [[nodiscard]] std::vector<ImageTerms> terms_at(const FitPoint& point,
                                                    Curvature curvature) const;
@@ -131,27 +135,23 @@ class FitObjective {
     [[nodiscard]] Eigen::VectorXd gradient_of(const FitPoint& point,
                                               const std::vector<ImageTerms>& terms) const;
 
-    [[nodiscard]] PathLight path_light(const FitState& state) const;
+    [[nodiscard]] FitModel model_at(const Eigen::VectorXd& x) const;
     [[nodiscard]] ImageView view(const FitPoint& point,
-                                 const FitState& state,
-                                 const PathLight& light,
+                                 const FitModel& model,
                                  std::size_t image) const;
-    [[nodiscard]] std::size_t channels() const { return channels_; }
-    [[nodiscard]] FitState state_at(const FitPoint& point) const {
-        return problem_.state_at(point.x.head(std::ssize(problem_.numbers)));
-    }
-
-  private:
+    // Whether enough blocks of an image are lit and observed.
     [[nodiscard]] bool counts(const ImageView& view) const {
         return 2 * view.blocks >= samples_.places.size();
     }
+    [[nodiscard]] std::size_t channels() const { return channels_; }
+
+  private:
     [[nodiscard]] ImageTerms terms_of(const ImageView& view,
                                       const FitPoint& point,
                                       const Eigen::Vector3d& pose,
                                       Curvature curvature) const;
     [[nodiscard]] ImageView view_of(const FitPoint& point,
-                                    const FitState& state,
-                                    const PathLight& light,
+                                    const FitModel& model,
                                     const Sled& sled,
                                     const FitImage* image) const;
     [[nodiscard]] Eigen::VectorXd within_bounds(const Eigen::VectorXd& x, Eigen::VectorXd dx) const;

@@ -101,6 +101,12 @@ class Problem {
         numbers_.push_back(number);
     }
 
+    // Weights of a beam's prior, relative to its own.
+    [[nodiscard]] double as_told() const {
+        const auto told = options_.priors.find("beam");
+        return told == options_.priors.end() ? 1.0 : kShapeSpread / told->second;
+    }
+
     // Strobes with equal beams share one, unless each is to have its own.
     void add_beams(double widest_rad, double block_rad) {
         std::vector<std::string> signatures;
@@ -122,10 +128,10 @@ class Problem {
                 FitNumber number{.at = {FitPart::Beam, b, k}, .key = key};
                 number.word = "beam";
                 number.start = made.coefficients()[k];
-                if (!names.empty()) number.spread = kShapeSpread;
+                if (!names.empty()) number.spread = made.spread() / as_told();
                 number.least = -kFarthestCoefficient;
                 number.most = kFarthestCoefficient;
-                number.is_shown_exp = !names.empty();
+                number.is_log = !names.empty();
                 number.per_unit = kind == FitBeamKind::Optics ? kMillimetres : 1.0;
                 number.key += names.empty() ? fmt::format(".ln_{}", k) : "." + names[k];
                 numbers_.push_back(number);
@@ -295,37 +301,26 @@ class Problem {
 
     FitProblem with_priors() {
         const auto count = std::ssize(numbers_);
-        std::vector<Eigen::RowVectorXd> rows;
-        std::vector<double> means;
+        FitProblem problem{.start = state_,
+                           .numbers = numbers_,
+                           .prior_rows = Eigen::MatrixXd::Zero(count, count),
+                           .prior_means = Eigen::VectorXd::Zero(count)};
+        Eigen::MatrixXd& rows = problem.prior_rows;
+        // A table's are related by its prior alone.
+        for (Index k = 0; k < count; ++k) {
+            const FitNumber& number = numbers_[static_cast<std::size_t>(k)];
+            if (number.at.part != FitPart::Beam || number.is_log) rows(k, k) = 1.0 / number.spread;
+        }
         Index first = 0;
-        const auto told = options_.priors.find("beam");
-        const double as_told = told == options_.priors.end() ? 1.0 : kShapeSpread / told->second;
         for (const FitBeam& beam : state_.beams) {
             const BeamPrior& prior = beam.prior();
-            const auto coefficients = std::ssize(beam.coefficients());
-            const Eigen::VectorXd c =
-                Eigen::VectorXd::Map(beam.coefficients().data(), coefficients);
-            const Eigen::VectorXd r = coefficients > 0
-                                          ? Eigen::VectorXd(prior.means - prior.rows * c)
-                                          : Eigen::VectorXd();
-            for (Index k = 0; k < r.size(); ++k) {
-                Eigen::RowVectorXd& row = rows.emplace_back(Eigen::RowVectorXd::Zero(count));
-                row.segment(first, coefficients) = as_told * prior.rows.row(k);
-                means.push_back(as_told * r(k));
-            }
-            first += coefficients;
+            const Index own = prior.rows.rows();
+            rows.conservativeResizeLike(Eigen::MatrixXd::Zero(rows.rows() + own, count));
+            rows.block(rows.rows() - own, first, own, prior.rows.cols()) = as_told() * prior.rows;
+            problem.prior_means.conservativeResize(rows.rows());
+            problem.prior_means.tail(own) = as_told() * prior.means;
+            first += std::ssize(beam.coefficients());
         }
-        for (Index k = first; k < count; ++k) {
-            rows.emplace_back(Eigen::RowVectorXd::Zero(count))(k) =
-                1.0 / numbers_[static_cast<std::size_t>(k)].spread;
-            means.push_back(0.0);
-        }
-        FitProblem problem{
-            .start = state_, .numbers = numbers_, .prior_rows = {}, .prior_means = {}};
-        problem.prior_rows.resize(std::ssize(rows), count);
-        for (Index k = 0; k < std::ssize(rows); ++k)
-            problem.prior_rows.row(k) = rows[static_cast<std::size_t>(k)];
-        problem.prior_means = Eigen::VectorXd::Map(means.data(), std::ssize(means));
         return problem;
     }
 
@@ -353,11 +348,11 @@ double FitNumber::slope(double x) const {
 }
 
 double FitNumber::shown(double x) const {
-    return per_unit * (is_shown_exp ? std::exp(value(x)) : value(x));
+    return per_unit * value(x);
 }
 
 double FitNumber::shown_slope(double x) const {
-    return is_shown_exp ? shown(x) : per_unit * slope(x);
+    return per_unit * slope(x);
 }
 
 FitState FitProblem::state_at(const Eigen::VectorXd& x) const {

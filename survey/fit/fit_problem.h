@@ -4,7 +4,7 @@
 //
 // A number is searched as x, which is 0 at the rig's value:
 //
-//   value = start e^x    for what cannot be negative: powers, water, brightness
+//   value = start e^x    for what cannot be negative: powers, water, brightness, beams' shapes
 //   value = start + x    for all others
 //
 // The prior of x is Gaussian, 0 +- `spread`; that of a beam's coefficients is in fit_beam.h. These
@@ -47,9 +47,8 @@ struct FitNumber {
     std::string word{};  // power: names it in options
     double spread = 1.0;
     bool is_log = false;
-    bool is_shown_exp = false;  // a beam's logarithm, reported as its exponential
-    double per_unit = 1.0;      // the state's unit, in the key's
-    double least = 0.0;         // of x
+    double per_unit = 1.0;  // the state's unit, in the key's
+    double least = 0.0;     // of x
     double most = 0.0;
     double start = 0.0;  // in the state
 

@@ -38,11 +38,6 @@ struct Mean {
     }
 };
 
-// For places in rows from the top left.
-std::size_t blocks_along(int size_px, int block_px) {
-    return static_cast<std::size_t>(std::max(1, size_px / block_px));
-}
-
 // Colours at every pixel: the sites of a mosaic's colours are half a pixel off the middle of a
 // block, to either side, which would bias the mean of a slope.
 RawImage of_all_colours(const RawImage& raw) {
@@ -54,18 +49,21 @@ RawImage of_all_colours(const RawImage& raw) {
 
 // f(mean, sample) of every sample within a block.
 template <typename F>
-void for_blocks(const RawImage& raw, int block_px, std::vector<Mean>& means, const F& f) {
-    const std::size_t across = blocks_along(raw.width_px, block_px);
-    const std::size_t down = blocks_along(raw.height_px, block_px);
+void for_blocks(const RawImage& raw,
+                const FitPlaces& places,
+                std::vector<Mean>& means,
+                const F& f) {
+    const std::size_t across = places.across();
+    const std::size_t down = places.down();
     const auto width = static_cast<std::size_t>(raw.width_px);
     for (int plane = 0; plane < raw.planes(); ++plane) {
         for (int row = 0; row < raw.height_px; ++row) {
-            const auto j = static_cast<std::size_t>(row / block_px);
+            const auto j = static_cast<std::size_t>(row / places.block_px);
             if (j >= down) break;
             const float* samples = &raw.samples[static_cast<std::size_t>(plane) * raw.pixels() +
                                                 static_cast<std::size_t>(row) * width];
             for (int column = 0; column < raw.width_px; ++column) {
-                const auto i = static_cast<std::size_t>(column / block_px);
+                const auto i = static_cast<std::size_t>(column / places.block_px);
                 if (i >= across) break;
                 const int channel =
                     raw.mosaic == Mosaic::None ? plane : channel_at(raw.mosaic, column, row);
@@ -76,17 +74,16 @@ void for_blocks(const RawImage& raw, int block_px, std::vector<Mean>& means, con
     }
 }
 
-void average(const RawImage& raw, float white, int block_px, FitImage& image) {
-    std::vector<Mean> means(blocks_along(raw.width_px, block_px) *
-                            blocks_along(raw.height_px, block_px) * kChannels);
+void average(const RawImage& raw, float white, const FitPlaces& places, FitImage& image) {
+    std::vector<Mean> means(places.size() * kChannels);
     double saturated = 0.0;
-    for_blocks(raw, block_px, means, [&](Mean& mean, float sample) {
+    for_blocks(raw, places, means, [&](Mean& mean, float sample) {
         ++mean.sites;
         if (!(sample >= white)) return;
         ++mean.saturated;
         saturated += 1.0;
     });
-    for_blocks(of_all_colours(raw), block_px, means, [](Mean& mean, float sample) {
+    for_blocks(of_all_colours(raw), places, means, [](Mean& mean, float sample) {
         if (!std::isfinite(sample)) return;
         mean.sum += sample;
         ++mean.count;
@@ -147,7 +144,7 @@ void require_every_channel(const FitImage& image, const std::string& map) {
 FitImage image_of_map(ExrReader& reader,
                       const std::string& map,
                       const Camera& camera,
-                      int block_px) {
+                      const FitPlaces& places) {
     const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
     const std::vector<std::string> channels = reader.channels();
     for (const std::string& name : names) {
@@ -163,24 +160,13 @@ FitImage image_of_map(ExrReader& reader,
         .sled = {.altitude_m = number_of(reader, "aphotic:altitude_m", map),
                  .pitch_rad = number_of(reader, "aphotic:pitch_deg", map) / kDegreesPerRadian,
                  .roll_rad = number_of(reader, "aphotic:roll_deg", map) / kDegreesPerRadian}};
-    average(raw, std::numeric_limits<float>::infinity(), block_px, image);
+    average(raw, std::numeric_limits<float>::infinity(), places, image);
     require_every_channel(image, map);
     const bool is_mono = camera.sensor.is_mono();
     // For a mono camera all three are equal, and count once.
     for (std::size_t k = 0; k < image.signal.size() && is_mono; ++k)
         if (k % kChannels > 0) image.signal[k] = std::numeric_limits<float>::quiet_NaN();
     return image;
-}
-
-FitPlaces places_of(int width_px, int height_px, int block_px) {
-    FitPlaces places{.width_px = width_px, .height_px = height_px, .block_px = block_px};
-    for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
-        for (std::size_t i = 0; i < blocks_along(width_px, block_px); ++i) {
-            places.columns.push_back((static_cast<double>(i) + 0.5) * block_px);
-            places.rows.push_back((static_cast<double>(j) + 0.5) * block_px);
-        }
-    }
-    return places;
 }
 
 // Omits images that not all strobes lit. files: by image, the survey's.
@@ -218,7 +204,7 @@ FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
     // Even, so that every block of a mosaic holds the same number of sites of each kind.
     int block_px = std::max(1, width_px / std::max(1, blocks_across));
     if (block_px > 1) block_px -= block_px % 2;
-    return places_of(width_px, height_px, block_px);
+    return {.width_px = width_px, .height_px = height_px, .block_px = block_px};
 }
 
 FitSamples samples_of_images(const Survey& survey,
@@ -248,7 +234,7 @@ FitSamples samples_of_images(const Survey& survey,
             SurveyImage taken = read_survey_image(survey.files[i].source, numbers);
             LightCells lit = light_cells(taken, survey, survey.files[i]);
             take_off_black(taken);
-            average(taken.raw, taken.levels.white, samples.places.block_px, image);
+            average(taken.raw, taken.levels.white, samples.places, image);
             return std::pair(std::move(image), std::move(lit));
         },
         [&](std::size_t i, std::pair<FitImage, LightCells> read) {
@@ -275,7 +261,7 @@ FitSamples samples_of_maps(const std::vector<std::string>& maps,
     samples.places = fit_places(camera.width_px, camera.height_px, blocks_across);
     for (const std::string& map : maps)
         samples.images.push_back(from_named_exr(map, [&](ExrReader& reader) {
-            return image_of_map(reader, map, camera, samples.places.block_px);
+            return image_of_map(reader, map, camera, samples.places);
         }));
     return samples;
 }

@@ -42,7 +42,7 @@ void add_beam(const FitBeam& fit,
         return;
     }
     if (fit.kind() == FitBeamKind::Cosine) {
-        const double half = std::acos(std::pow(0.5, std::exp(-fit.coefficients().front())));
+        const double half = std::acos(std::pow(0.5, 1.0 / fit.coefficients().front()));
         text.set(key + ".fwhm_deg", rounded(2.0 * half * kDegreesPerRadian));
         return;
     }

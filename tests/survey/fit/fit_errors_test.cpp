@@ -66,8 +66,8 @@ Drawn draw(std::uint64_t seed, double contrast, int images) {
         for (std::size_t k = 0; k < image.signal.size(); ++k) {
             const std::size_t place = k / kChannels;
             image.signal[k] *=
-                static_cast<float>(level * floor.at(per_px * drawn.samples.places.columns[place],
-                                                    per_px * drawn.samples.places.rows[place]));
+                static_cast<float>(level * floor.at(per_px * drawn.samples.places.column(place),
+                                                    per_px * drawn.samples.places.row(place)));
         }
         image.sled.altitude_m += 0.02 * normal(dice);
         image.sled.pitch_rad += 0.006 * normal(dice);
@@ -175,8 +175,8 @@ TEST(FitErrors, DispersionIsOneOfWhiteNoise) {
         const FloorTexture floor(0.3, dice());
         for (std::size_t k = 0; k < image.signal.size(); ++k) {
             const std::size_t place = k / kChannels;
-            image.signal[k] *= static_cast<float>(floor.at(kBlock_m * samples.places.columns[place],
-                                                           kBlock_m * samples.places.rows[place]));
+            image.signal[k] *= static_cast<float>(floor.at(kBlock_m * samples.places.column(place),
+                                                           kBlock_m * samples.places.row(place)));
         }
     }
     EXPECT_GT(dispersion_of(samples), 1.0 + 2.0 * kChance);

@@ -50,8 +50,8 @@ std::vector<double> means_of(const std::vector<float>& map, const FitPlaces& pla
     const auto block = static_cast<std::size_t>(places.block_px);
     std::vector<double> means;
     for (std::size_t k = 0; k < places.size(); ++k) {
-        const auto left = static_cast<std::size_t>(places.columns[k]) - block / 2;
-        const auto top = static_cast<std::size_t>(places.rows[k]) - block / 2;
+        const auto left = static_cast<std::size_t>(places.column(k)) - block / 2;
+        const auto top = static_cast<std::size_t>(places.row(k)) - block / 2;
         for (std::size_t c = 0; c < kChannels; ++c) {
             double sum = 0.0;
             for (std::size_t i = 0; i < block * block; ++i)

@@ -64,17 +64,17 @@ double rho(double nu, const VectorXd& d, const MatrixXd& scale) {
 
 // S of the header, without determinants, of images by their dispersion; poses are exact.
 double S_of(const Fitted& fitted, const FitPoint& point) {
-    const FitState state = fitted.objective.state_at(point);
-    const PathLight path_light = fitted.objective.path_light(state);
+    const FitModel model = fitted.objective.model_at(point.x);
     const auto across = static_cast<Index>(fitted.samples.places.across());
     double S = 0.0;
     for (std::size_t i = 0; i < fitted.samples.images.size(); ++i) {
-        const ImageView view = fitted.objective.view(point, state, path_light, i);
-        const Index places = view.residual.size() / kQ;
+        const ImageView view = fitted.objective.view(point, model, i);
+        const VectorXd residual = view.rows.col(0);
+        const Index places = residual.size() / kQ;
         VectorXd mean = VectorXd::Zero(kQ);
         std::vector<VectorXd> cells;
         for (Index place = 0; place < places; ++place) {
-            cells.emplace_back(view.residual.segment(place * kQ, kQ));
+            cells.emplace_back(residual.segment(place * kQ, kQ));
             mean += cells.back() / static_cast<double>(places);
         }
         S += rho(kLevelFreedom, mean, point.texture.level);

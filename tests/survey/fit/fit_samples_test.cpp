@@ -72,8 +72,8 @@ TEST_F(FitSamplesOfAnImage, ABlockOfAMosaicHasTheSlopesMiddle) {
     ASSERT_EQ(found.places.block_px, 4);
     ASSERT_EQ(found.places.size(), 24U);
     for (std::size_t i = 0; i < found.places.size(); ++i) {
-        const double column = found.places.columns[i];
-        const double row = found.places.rows[i];
+        const double column = found.places.column(i);
+        const double row = found.places.row(i);
         // At the image's edge a mosaic is mirrored, which bends a slope.
         if (column < 4 || row < 4 || column > kWidth_px - 4 || row > kHeight_px - 4) continue;
         for (std::size_t c = 0; c < kChannels; ++c) {

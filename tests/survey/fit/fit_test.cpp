@@ -145,7 +145,7 @@ TEST(Fit, LooksPastWhatStonesShade) {
     const FitPlaces& places = samples.places;
     for (std::size_t image = 0; image < samples.images.size(); ++image) {
         for (std::size_t place = image; place < places.size(); place += kOf) {
-            if (places.rows[place] < 0.5 * places.height_px) continue;
+            if (places.row(place) < 0.5 * places.height_px) continue;
             for (std::size_t c = 0; c < kChannels; ++c)
                 samples.images[image].signal[kChannels * place + c] *= kShade;
         }

@@ -35,7 +35,7 @@ FitResult start_of(const RigText& rig, const FitOptions& options) {
 
 // Of a beam of cones: these shares of its flux, times a factor.
 void set_shares(FitBeam& beam, const std::vector<double>& shares) {
-    for (std::size_t k = 0; k < shares.size(); ++k) beam.coefficient(k) = std::log(shares[k]);
+    for (std::size_t k = 0; k < shares.size(); ++k) beam.coefficient(k) = shares[k];
 }
 
 Rig written(const RigText& rig, const FitResult& result) {
@@ -97,8 +97,8 @@ TEST(FittedRig, LensesAreThoseThatWereFitted) {
     const RigText rig = scene("habcam-optics.toml");
     FitResult result = start_of(rig, {.beam = FitBeamKind::Optics});
     ASSERT_EQ(result.state.beams.size(), 2U);
-    result.state.beams[0].coefficient(0) = std::log(0.071);
-    result.state.beams[1].coefficient(1) = std::log(0.043);
+    result.state.beams[0].coefficient(0) = 0.071;
+    result.state.beams[1].coefficient(1) = 0.043;
     const Rig fitted = written(rig, result);
     const Rig was = rig.rig();
     for (std::size_t s = 0; s < 4; ++s) {
@@ -115,12 +115,12 @@ TEST(FittedRig, LensesAreThoseThatWereFitted) {
 TEST(FittedRig, IsWrittenAgain) {
     const RigText rig(replaced(scene("habcam.toml").text(), "fresnel", "fitted"), "rig.toml", {});
     FitResult result = start_of(rig, {.beam = FitBeamKind::Cosine});
-    result.state.beams.front().coefficient(0) = std::log(3.0);
+    result.state.beams.front().coefficient(0) = 3.0;
     const Rig fitted = written(rig, result);
     ASSERT_EQ(fitted.strobes[0].beam.cones.size(), 1U);
     EXPECT_NEAR(fitted.strobes[0].beam.cones[0].exponent, 3.0, kRounding);
     // Half as bright at 60 degrees, without the digits that a rounding leaves.
-    result.state.beams.front().coefficient(0) = 0.0;
+    result.state.beams.front().coefficient(0) = 1.0;
     const TempFolder folder;
     write_fitted_rig(rig, result, folder.path());
     const std::string toml = read_text_file(folder.path() / kFittedRig);
