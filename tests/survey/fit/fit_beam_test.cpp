@@ -92,10 +92,11 @@ void expect_derivatives(FitBeam beam) {
         EXPECT_NEAR(value.gradient.dot(w), 0.0, kAlongTheSphere * (1.0 + value.gradient.norm()));
         for (std::size_t k = 0; k < beam.coefficients().size(); ++k) {
             const double was = beam.coefficients()[k];
-            beam.coefficient(k) = was + kStep;
+            const double step = beam.kind() == FitBeamKind::Table ? kStep : kStep * was;
+            beam.coefficient(k) = was + step;
             const double more = intensity(beam, w);
-            beam.coefficient(k) = was - kStep;
-            const double wanted = (more - intensity(beam, w)) / (2.0 * kStep);
+            beam.coefficient(k) = was - step;
+            const double wanted = (more - intensity(beam, w)) / (2.0 * step);
             beam.coefficient(k) = was;
             const bool is_there = k >= value.first && k < value.first + value.by.size();
             EXPECT_NEAR(is_there ? value.by[k - value.first] : 0.0,
