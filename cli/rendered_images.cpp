@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "image/exr.h"
-#include "image/traced_image.h"
 #include "spectral/integrator.h"
 
 #include <algorithm>

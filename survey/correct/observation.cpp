@@ -326,8 +326,8 @@ void write_observation(const std::filesystem::path& map_file, const Observation&
                {"aphotic:average", name_of(kAverages, observation.average)},
                {"aphotic:images", fmt::format("{}", observation.images)},
                {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
-               {"aphotic:pitch_deg", fmt::format("{}", degrees(sled.pitch_rad))},
-               {"aphotic:roll_deg", fmt::format("{}", degrees(sled.roll_rad))}});
+               {"aphotic:pitch_deg", fmt::format("{}", sled.pitch_rad / kRadiansPerDegree)},
+               {"aphotic:roll_deg", fmt::format("{}", sled.roll_rad / kRadiansPerDegree)}});
 }
 
 }  // namespace aphotic

@@ -90,9 +90,10 @@ Counts counts_of(const std::vector<PlannedWavelength>& wavelengths) {
 
 TEST(InFrames, EveryThreeShareWithoutAPort) {
     const auto counts = [](int wavelengths, int per_frame, double bound) {
-        return counts_of(in_frames(habcam(),
-                                   even(400.0, 720.0, wavelengths),
-                                   {.wavelengths_per_frame = per_frame, .pixel_shift = bound}));
+        return counts_of(in_frames(
+            habcam(),
+            even(400.0, 720.0, wavelengths),
+            {.wavelengths_per_frame = per_frame, .pixel_shift = bound, .emitter_lamps = {}}));
     };
     EXPECT_EQ(counts(8, 3, kPixelShift), (Counts{3, 3, 2}));
     EXPECT_EQ(counts(8, 3, 0.0), (Counts{3, 3, 2}));
@@ -109,7 +110,7 @@ TEST(InFrames, FramesAreAsLargeAsTheyMayBe) {
     const auto between = [&](double least, double most) {
         return std::uniform_real_distribution<double>(least, most)(random);
     };
-    Rig rig = rig_of("port.toml");
+    Rig rig = scene_rig("port.toml");
     int shared = 0;
     int parted_by_bound = 0;
     for (int n = 0; n < 200; ++n) {
@@ -121,8 +122,10 @@ TEST(InFrames, FramesAreAsLargeAsTheyMayBe) {
         }
         const int per_frame = 1 + n % 3;
         const double bound = between(0.0, 1.0);
-        const auto wavelengths =
-            in_frames(rig, lambda_nm, {.wavelengths_per_frame = per_frame, .pixel_shift = bound});
+        const auto wavelengths = in_frames(
+            rig,
+            lambda_nm,
+            {.wavelengths_per_frame = per_frame, .pixel_shift = bound, .emitter_lamps = {}});
         ASSERT_EQ(wavelengths.size(), lambda_nm.size());
         std::size_t next = 0;
         for (const std::size_t count : counts_of(wavelengths)) {
