@@ -145,6 +145,29 @@ void print_confounded(const std::vector<Confounded>& pairs) {
         say("confounded: {} more pairs, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
+// Nothing is expected of a rig that leaves a pattern.
+void print_verdict(const std::string& rig_name, const FitResult& result) {
+    const double expected = 100.0 * result.unevenness;
+    if (result.pattern.is_too_large()) {
+        say("no evenness is promised, because of that pattern: without it, {:.2g} %. {} as it is "
+            "may "
+            "correct more evenly\n",
+            expected,
+            rig_name);
+        return;
+    }
+    say("correction by this rig is expected to be even to {:.2g} %\n", expected);
+    if (is_rig_as_good(result))
+        say("{} as it is should correct as evenly: its light differs by {:.2g} %, within the fit's "
+            "error. Keep it, or hold what you know, such as --hold beam\n",
+            rig_name,
+            100.0 * result.moved);
+    else
+        say("correction by {} as it is: even to {:.2g} %\n",
+            rig_name,
+            100.0 * rig_unevenness(result));
+}
+
 void print_result(const std::string& title,
                   const std::string& rig_name,
                   const FitResult& result,
@@ -161,16 +184,7 @@ void print_result(const std::string& title,
     print_confounded(result.confounded);
     for (const Suspicion& one : result.looks_wrong)
         say("looks wrong: {}: {}\n", one.about, one.what);
-    say("correction by this rig is expected to be even to {:.2g} %\n", 100.0 * result.unevenness);
-    if (is_rig_as_good(result))
-        say("{} as it is should correct as evenly: its light differs by {:.2g} %, within the fit's "
-            "error. Keep it, or hold what you know, such as --hold beam\n",
-            rig_name,
-            100.0 * result.moved);
-    else
-        say("correction by {} as it is: even to {:.2g} %\n",
-            rig_name,
-            100.0 * rig_unevenness(result));
+    print_verdict(rig_name, result);
     say("  {}  the rig\n", (folder / kFittedRig).string());
     say("  {}  errors and covariance\n", (folder / kFitNumbers).string());
     say("  {}  to look at\n", (folder / kFitPage).string());

@@ -37,7 +37,16 @@ std::string headline(const FitResult& result) {
     return words;
 }
 
+// Nothing is expected of a rig that leaves a pattern.
 std::vector<std::string> verdict(const FitResult& result) {
+    const std::string pattern = "The residuals have " + words_of(result.pattern) + ".";
+    if (result.pattern.is_too_large())
+        return {
+            pattern,
+            fmt::format("So no evenness is promised: without the pattern, correction by this rig "
+                        "would be expected to be even to {}. The rig as it was may correct more "
+                        "evenly.",
+                        percent(result.unevenness))};
     return {fmt::format("Correction by this rig is expected to be even to {}: the error of its "
                         "light over this flight, apart from the floor's mean level. It does not "
                         "include what the rig does not model, such as a veil that its water lacks, "
@@ -50,7 +59,7 @@ std::vector<std::string> verdict(const FitResult& result) {
                               percent(result.moved))
                 : fmt::format("The rig as it was is expected to leave {}.",
                               percent(rig_unevenness(result))),
-            "The residuals have " + words_of(result.pattern) + "."};
+            pattern};
 }
 
 std::vector<std::string> warnings(const FitResult& result) {

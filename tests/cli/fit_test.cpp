@@ -175,6 +175,19 @@ TEST_F(CommandFit, LearnsARigFromASurvey) {
     EXPECT_EQ(page.find(">Confounded<") != std::string::npos, !json.at("confounded").empty());
 }
 
+// The aim stays off where only powers are free.
+TEST_F(CommandFit, PromisesNoEvennessWhereAPatternStays) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.fore_tilt_deg += 5.0;
+    write_rigs(of_few_pixels(), numbers);
+    fly("--images 20 --texture 0.005");
+    const std::string out =
+        done(by_images(kCamera + "--blocks 12 --free power"), "no evenness is promised").out;
+    const std::string page = text_of("fitted/report.html");
+    EXPECT_TRUE(has(page, "So no evenness is promised"));
+    for (const std::string& text : {out, page}) EXPECT_FALSE(has(text, "is expected to be even"));
+}
+
 // Without a navigation: depths along the axis are those of the true poses. Of one image the map is
 // missing, of another it is empty from row 24 on, but for what the plane around fills; and at one a
 // strobe was out.
