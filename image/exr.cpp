@@ -17,11 +17,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <new>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 namespace aphotic {
 
@@ -156,8 +156,9 @@ struct ExrWriter::File {
 
     // The system's message comes before OpenEXR's.
     [[noreturn]] void fail(const fs::path& called, const char* why) const {
-        throw RunError(
-            "{}: cannot be written: {}", called.string(), disk ? why : std::strerror(errno));
+        throw RunError("{}: cannot be written: {}",
+                       called.string(),
+                       disk ? std::string(why) : std::generic_category().message(errno));
     }
 
     std::ofstream disk;
