@@ -117,7 +117,7 @@ class Section {
 
     // Runs read(), and prefixes any InputError with file, line and key.
     template <typename Read>
-    auto at_key(std::string_view key, Read read) const {
+    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
         try {
             return read();
         } catch (const InputError& error) {

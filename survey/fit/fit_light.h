@@ -67,7 +67,8 @@ struct FitPlaces {
         return (static_cast<double>(place % across()) + 0.5) * block_px;
     }
     [[nodiscard]] double row(std::size_t place) const {
-        return (static_cast<double>(place / across()) + 0.5) * block_px;
+        const std::size_t row = place / across();
+        return (static_cast<double>(row) + 0.5) * block_px;
     }
 };
 

@@ -86,8 +86,9 @@ void write_seen_of(const SimulatedSurvey& survey,
     if (survey.texture > 0.0)
         texture = ExrReader(file_of(survey, "texture", leg)).planes(std::vector<std::string>{"Y"});
     for (std::size_t i = 0; i < plane; ++i) {
-        const auto seen =
-            sight(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+        const std::size_t column = i % width;
+        const std::size_t row = i / width;
+        const auto seen = sight(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
         const SeenPixel pixel = pixel_of(seen, colours, texture[i]);
         for (std::size_t p = 0; p < kSeenPlanes; ++p) samples[p * plane + i] = pixel[p];
     }
