@@ -111,7 +111,7 @@ class FitBeam {
     FitBeamKind kind_;
     double widest_rad_;
     Beam beam_;                // the rig's
-    std::vector<Beam> parts_;  // softened: all of it if held; or its cones, each of a flux of 1
+    std::vector<Beam> parts_;  // its cones, softened, of a flux of 1, or of their shares if held
     std::vector<double> c_;
     BeamPrior prior_;
 };
