@@ -145,7 +145,7 @@ void print_confounded(const std::vector<Confounded>& pairs) {
         say("confounded: {} more pairs, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
-// Nothing is expected of a rig that leaves a pattern.
+// No evenness is promised of a rig that leaves a pattern.
 void print_verdict(const std::string& rig_name, const FitResult& result) {
     const double expected = 100.0 * result.unevenness;
     if (result.pattern.is_too_large()) {

@@ -44,9 +44,9 @@ struct AnyImage {
 // read. An InputError if there is none.
 [[nodiscard]] std::map<std::string, std::string> header_of_image(const std::filesystem::path& file);
 
-// Writes planes as an image in the format of the file's extension, made in memory, since libraries
-// do not report a full disk; complete or not at all. Integers
-// map 0 to 1 to their range, rounded and clipped. A failure to write is a RunError.
+// Writes planes as an image in the format of the file's extension, complete or not at all. It is
+// encoded in memory, since libraries do not report a full disk. Integers map 0 to 1 to their range,
+// rounded and clipped. A failure to write is a RunError.
 enum class SampleType { Bits8, Bits16 };
 // All are lossless except JPEG: deflate at its fastest level, and at the default level of most
 // programs.

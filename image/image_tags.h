@@ -24,7 +24,7 @@ using SharedTags = std::shared_ptr<const ImageTags>;
 [[nodiscard]] SharedTags read_image_tags(const std::filesystem::path& file);
 
 // Adds these tags, if any, to those in the bytes of a TIFF, PNG or JPEG, and marks its samples as
-// sRGB. A RunError if they are none, with the name of their file.
+// sRGB. A RunError that names the file if they are no such image.
 void add_image_tags(const std::filesystem::path& file,
                     std::vector<unsigned char>& image,
                     const SharedTags& tags,

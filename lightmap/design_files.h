@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A design in a folder: designed.toml, the rig with its strobes moved and all else as its author
-// wrote it, with the files that it names, design.json with every number, and report.html,
-// one page: the gain, the light on the floor before and after, the trade-off of evenness against
-// signal, the new places of the strobes, and the figures of every pose.
+// wrote it, with the files that it names; design.json with every number; and report.html, a page of
+// the gain, the light on the floor before and after, the trade-off of evenness against signal, the
+// new places of the strobes, and the figures of every pose.
 #pragma once
 
 #include "lightmap/design.h"

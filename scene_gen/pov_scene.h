@@ -35,6 +35,7 @@
 
 namespace aphotic {
 
+// The default of SceneOptions::pixel_shift [px].
 inline constexpr double kPixelShift = 0.25;
 
 struct FrameScene {

@@ -5,8 +5,7 @@
 //   p(x, y) = sum over i + j <= order of  c_ij P_i(x) P_j(y)
 //
 // P_i   polynomials of degree i, orthonormal over the columns, P_j over the rows: c_ij is the sum
-// over
-//       the pixels of P_i(x) P_j(y) times the mean image
+//       of P_i(x) P_j(y) times the mean image over the pixels
 // x, y  a pixel's centre, -1 to 1 from border to border
 //
 // The fit to many images on one grid is the fit to their mean, so an image adds (order + 1)^2

@@ -7,8 +7,7 @@
 //            kKnot_rad apart from 0 to the widest angle, mirrored at 0: I is positive, smooth, and
 //            even about the axis. Beyond the widest angle it continues with its slope.
 //   Cones    c_k: each cone's share of the flux. Edges sharper than kSoftEdge blocks are softened
-//   to
-//            about that width: a block's mean over a step is a slope, which locates the step
+//            to about that width: a block's mean over a step is a slope, which locates the step
 //   Cosine   cos^n theta, c: n
 //   Optics   the rig's optics, c: its focal length and distance [m]
 //   Held     the rig's beam unchanged, with edges as soft as blocks make them

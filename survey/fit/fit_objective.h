@@ -86,11 +86,11 @@ struct FitModel {
 };
 
 // An image at a point. Columns: the residual, that is its blocks' logarithms less the model's, then
-// the model's slopes over the point's x, then those over the pose.
+// the model's slopes over the point's x, then those over the pose. Residuals are NaN of blocks that
+// do not count.
 struct ImageView {
     BlockLight light;
-    BlockLight::Rows
-        rows{};  // by place, then channel; residuals are NaN of blocks that do not count
+    BlockLight::Rows rows{};   // by place, then channel
     BlockLight::Rows level{};  // their mean, by channel
     std::size_t blocks = 0;
 };

@@ -37,7 +37,7 @@ std::string headline(const FitResult& result) {
     return words;
 }
 
-// Nothing is expected of a rig that leaves a pattern.
+// No evenness is promised of a rig that leaves a pattern.
 std::vector<std::string> verdict(const FitResult& result) {
     const std::string pattern = "The residuals have " + words_of(result.pattern) + ".";
     if (result.pattern.is_too_large())

@@ -78,8 +78,10 @@ TEST_F(AphoticSpectrumInc, TakesVectorsOfEqualNumbersAlone) {
                " }\nAphotic_Write_Spectrum (S, \"reflectance\", \"a.csv\", 400, 700, 100)";
     };
     EXPECT_NEAR(written(spline("<0.2, 0.2, 0.2>")).at(600.0), 0.3, kPrinted);
+    std::filesystem::remove(folder_.path() / "a.csv");
     const PovRayRun run = write(spline("<0.2, 0.8, 0.2>"));
     EXPECT_FALSE(run.end.succeeded());
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.csv"));
     EXPECT_NE(run.said().find("Aphotic_Write_Spectrum: found <0.400000, 0.600000, 0.400000> at "
                               "500.000000 nm; allowed: a number, or a vector of equal ones."),
               std::string::npos)
