@@ -54,32 +54,42 @@ FitPoint start_of(const FitObjective& objective,
     return start;
 }
 
-// Where as many images again would bring most, level flight at another altitude.
-std::optional<FlyAt> fly_at(const FitObjective& objective,
-                            const FitPoint& point,
-                            const FitSamples& samples,
-                            Index number,
-                            double error) {
-    constexpr std::array kAltitudes{0.5, 0.7, 1.4, 2.0};  // of the mean
-    constexpr double kHelps = 0.7;
+// The curvature of the images as they are, and with as many again in level flight at an altitude.
+struct MoreImages {
     double altitude_m = 0.0;
-    for (const FitImage& image : samples.images)
-        altitude_m += image.sled.altitude_m / static_cast<double>(samples.images.size());
+    MatrixXd curvature;
+};
+std::vector<MoreImages> more_images(const FitObjective& objective,
+                                    const FitPoint& point,
+                                    const FitSamples& samples) {
+    constexpr std::array kAltitudes{0.5, 0.7, 1.4, 2.0};  // of the mean
+    const auto count = static_cast<double>(samples.images.size());
+    double altitude_m = 0.0;
+    for (const FitImage& image : samples.images) altitude_m += image.sled.altitude_m / count;
     const MatrixXd A = objective.curvature_of(objective.terms_at(point, Curvature::Majorant));
-    const auto error_of = [&](const MatrixXd& information) {
-        return std::sqrt(information.ldlt().solve(VectorXd::Unit(A.rows(), number))(number));
-    };
-    const double now = error_of(A);
-    std::optional<FlyAt> best;
-    double least = kHelps * now;
+    std::vector<MoreImages> more{{.altitude_m = altitude_m, .curvature = A}};
     for (const double times : kAltitudes) {
         const double there_m = times * altitude_m;
-        const double then =
-            error_of(A + static_cast<double>(samples.images.size()) *
-                             objective.information_at(point, {.altitude_m = there_m}));
+        more.push_back(
+            {there_m, A + count * objective.information_at(point, {.altitude_m = there_m})});
+    }
+    return more;
+}
+
+// Where they would improve a number most.
+std::optional<FlyAt> fly_at(const std::vector<MoreImages>& more, Index number, double error) {
+    constexpr double kHelps = 0.7;
+    const auto error_of = [&](const MatrixXd& A) {
+        return std::sqrt(A.ldlt().solve(VectorXd::Unit(A.rows(), number))(number));
+    };
+    const double now = error_of(more.front().curvature);
+    std::optional<FlyAt> best;
+    double least = kHelps * now;
+    for (const MoreImages& images : more) {
+        const double then = error_of(images.curvature);
         if (!(then < least)) continue;
         least = then;
-        best = FlyAt{.altitude_m = there_m, .error = error * then / now};
+        best = FlyAt{.altitude_m = images.altitude_m, .error = error * then / now};
     }
     return best;
 }
@@ -200,26 +210,30 @@ std::vector<std::size_t> add_images(const FitObjective& objective,
     return counted;
 }
 
-// The difference of the logarithms of two rigs' maps over the flight, at the blocks that count by
-// the first, less each channel's mean; rms. Where the other gives no light, it counts as the
-// darkest that would.
-double moved_between(const FitObjective& objective,
-                     const FitPoint& point,
-                     const FitObjective& other_objective,
-                     FitPoint other) {
-    other.pose = point.pose;
+// The difference of the logarithms of the fitted map and that of the rig as it is, none of its
+// forms replaced, over the flight, at the blocks that count, less each channel's mean; rms. Where
+// the rig gives no light, it counts as the darkest that would.
+double moved_from_rig(const RigText& text,
+                      const FitSamples& samples,
+                      const FitLight& light,
+                      const FitObjective& objective,
+                      const FitPoint& point) {
+    const FitOptions held{.free = std::vector<std::string>{"altitude"}};
+    const FitState as_it_is =
+        fit_problem(text, held, light.widest_rad(samples.images), light.block_rad()).start;
+    const PathLight of_rig(text, as_it_is.water, as_it_is.tint, light.paths(samples.images));
     const FitModel model = objective.model_at(point.x);
-    const FitModel other_model = other_objective.model_at(other.x);
     const std::size_t channels = objective.channels();
     std::vector<std::vector<double>> off(channels);
     const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
     for (std::size_t i = 0; i < point.pose.size(); i += apart) {
         const ImageView seen = objective.view(point, model, i);
-        const ImageView other_seen = other_objective.view(other, other_model, i);
+        const BlockLight rig =
+            light.at(as_it_is, of_rig, objective.sled_at(point, i), {}, samples.images[i].planes);
         for (std::size_t k = 0; k < static_cast<std::size_t>(seen.rows.rows()); ++k) {
             if (!std::isfinite(seen.rows(static_cast<Index>(k), 0))) continue;
             const auto row = static_cast<Index>(k / channels * kChannels + k % channels);
-            const double difference = seen.light.logarithm(row) - other_seen.light.logarithm(row);
+            const double difference = seen.light.logarithm(row) - rig.logarithm(row);
             off[k % channels].push_back(std::isfinite(difference) ? difference
                                                                   : -std::log(kDarkestBlock));
         }
@@ -232,23 +246,6 @@ double moved_between(const FitObjective& objective,
     return std::sqrt(variance / static_cast<double>(channels));
 }
 
-// By which the fitted light differs from that of the rig as it is, none of its forms replaced.
-double moved_from_rig(const RigText& text,
-                      const FitSamples& samples,
-                      const FitOptions& options,
-                      const FitLight& light,
-                      const FitObjective& objective,
-                      const FitPoint& point) {
-    const FitOptions held{.free = std::vector<std::string>{"altitude"},
-                          .altitude_error_m = options.altitude_error_m,
-                          .attitude_error_rad = options.attitude_error_rad,
-                          .threads = options.threads};
-    const FitProblem as_it_is =
-        fit_problem(text, held, light.widest_rad(samples.images), light.block_rad());
-    const FitObjective of_rig(text, samples, held, light, as_it_is);
-    return moved_between(objective, point, of_rig, of_rig.first_point());
-}
-
 // In the keys' units, of the numbers.
 void add_numbers(const FitProblem& problem,
                  const FitObjective& objective,
@@ -257,6 +254,7 @@ void add_numbers(const FitProblem& problem,
                  const MatrixXd& told,
                  const std::vector<double>& powers,
                  FitResult& result) {
+    std::vector<MoreImages> more;
     VectorXd units(told.rows());
     VectorXd of_state(told.rows());
     for (Index k = 0; k < told.rows(); ++k) {
@@ -275,7 +273,8 @@ void add_numbers(const FitProblem& problem,
                          .error = units(k) * error,
                          .spread = units(k) * number.spread,
                          .is_determined = is_of_curve || error < kDetermined * number.spread};
-        if (!one.is_determined) one.fly_at = fly_at(objective, point, samples, k, one.error);
+        if (!one.is_determined && more.empty()) more = more_images(objective, point, samples);
+        if (!one.is_determined) one.fly_at = fly_at(more, k, one.error);
         result.numbers.push_back(std::move(one));
     }
     result.covariance = units.asDiagonal() * told * units.asDiagonal();
@@ -362,7 +361,7 @@ FitResult fit(const RigText& text,
     result.block_px = samples.places.block_px;
     result.fixed = words_fixed_in(problem);
     result.unevenness = errors.unevenness;
-    result.moved = moved_from_rig(text, samples, options, light, objective, point);
+    result.moved = moved_from_rig(text, samples, light, objective, point);
     result.dispersion = point.dispersion;
     add_numbers(problem, objective, point, samples, errors.covariance, powers, result);
     for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);

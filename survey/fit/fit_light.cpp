@@ -106,11 +106,11 @@ void add_to_grid(const FitLight::Grids& grids, const Rows& from, Rows& to) {
     Rows of_rows(grids.down.cols() * across, numbers);
     for (Index j = 0; j < grids.down.cols(); ++j) {
         const Index first = j * grids.along.cols();
-        of_rows.middleRows(j * across, across) =
+        of_rows.middleRows(j * across, across).noalias() =
             grids.along *
             Eigen::Map<const Rows>(from.data() + first * numbers, grids.along.cols(), numbers);
     }
-    Eigen::Map<Rows>(to.data(), grids.down.rows(), across * numbers) +=
+    Eigen::Map<Rows>(to.data(), grids.down.rows(), across * numbers).noalias() +=
         grids.down * Eigen::Map<const Rows>(of_rows.data(), grids.down.cols(), across * numbers);
 }
 
@@ -277,6 +277,7 @@ void light_floor(const Scene& scene, const std::vector<FitLight::Rays>& places, 
     Scene::Lit lit{.is_floor = true, .w = {}};
     Scene::OfBeam beam;
     std::vector<double> by_version(scene.light().versions() - 1);
+    std::vector<PathSignal> T(scene.light().versions());
     for (std::size_t place = 0; place < places.size(); ++place) {
         const FitLight::Rays& rays = places[place];
         const FloorJet floor = scene.floor(place);
@@ -294,11 +295,9 @@ void light_floor(const Scene& scene, const std::vector<FitLight::Rays>& places, 
                 scene.look(lit, beam);
                 const Jet spread =
                     (state.floor_brightness * state.power[lit.strobe] / pi) * way.per_area;
-                std::vector<PathSignal> T;
-                for (std::size_t v = 0; v < scene.light().versions(); ++v)
-                    T.push_back(v == 0 || scene.is_looked_for(v)
-                                    ? scene.light().floor(lit.strobe, v, way.path_m.a)
-                                    : PathSignal{});
+                for (std::size_t v = 0; v < T.size(); ++v)
+                    if (v == 0 || scene.is_looked_for(v))
+                        T[v] = scene.light().floor(lit.strobe, v, way.path_m.a);
                 const std::size_t last = rays.size() == 1 ? kChannels : r + 1;
                 for (std::size_t c = rays.size() == 1 ? 0 : r; c < last; ++c) {
                     Jet signal(T[0].value[c]);
@@ -472,9 +471,11 @@ BlockLight FitLight::at(const FitState& state,
             middles.col(column) = middles.col(scene.of_floor()) / state.floor_brightness;
     }
     apply_vignetting(state, numbers, sights_, middles);
-    Rows means = middles;
-    if (!scene.has_planes()) {
-        means.setZero();
+    Rows means;
+    if (scene.has_planes()) {
+        means.swap(middles);
+    } else {
+        means.setZero(middles.rows(), middles.cols());
         add_to_grid(means_, middles, means);
     }
     BlockLight found;

@@ -42,9 +42,7 @@ struct Weighed {
         return (freedom + channels) / (freedom + d.squaredNorm());
     }
     // For -(2 w^2 / (nu + q)) J^T d d^T J, the factor of J^T d.
-    [[nodiscard]] double bend(double w) const {
-        return curvature == Curvature::Observed ? w * std::sqrt(2.0 / (freedom + channels)) : 0.0;
-    }
+    [[nodiscard]] double bend(double w) const { return w * std::sqrt(2.0 / (freedom + channels)); }
 };
 
 // Means over cells of a grid, of the residual and of its slopes.
@@ -78,10 +76,10 @@ struct Cells {
             }
             if (seen > 0.0) half.rows.middleRows(cell * q, q) = sum / seen;
             if (seen < 4.0) continue;
+            const auto part = [&](std::size_t k) { return rows.middleRows(parts[k], q); };
             for (const auto& signs : kSigns) {
-                sum.setZero();
-                for (std::size_t k = 0; k < parts.size(); ++k)
-                    sum += 0.5 * signs[k] * rows.middleRows(parts[k], q);
+                sum = 0.5 * (signs[0] * part(0) + signs[1] * part(1) + signs[2] * part(2) +
+                             signs[3] * part(3));
                 take(sum);
             }
         }
@@ -155,15 +153,19 @@ FitModel FitObjective::model_at(const VectorXd& x) const {
     return {state, {rig_, state.water, state.tint, paths_}};
 }
 
-ImageView FitObjective::view(const FitPoint& point,
-                             const FitModel& model,
-                             std::size_t image) const {
+Sled FitObjective::sled_at(const FitPoint& point, std::size_t image) const {
     Sled sled = samples_.images[image].sled;
     const Vector3d& off = point.pose[image];
     sled.altitude_m += off.x();
     sled.pitch_rad += off.y();
     sled.roll_rad += off.z();
-    return view_of(point, model, sled, &samples_.images[image]);
+    return sled;
+}
+
+ImageView FitObjective::view(const FitPoint& point,
+                             const FitModel& model,
+                             std::size_t image) const {
+    return view_of(point, model, sled_at(point, image), &samples_.images[image]);
 }
 
 // Without an image the residual is 0, on the sled's plane.
@@ -236,11 +238,12 @@ ImageTerms FitObjective::terms_of(const ImageView& view,
                          const BlockLight::Rows& mean,
                          MatrixXd& moments,
                          double& weights) {
-        white.noalias() = W * mean;
+        white.noalias() = W.lazyProduct(mean);  // a general product packs its factors first
         const VectorXd off = white.col(0);
         const double w = weighed.weight(off);
         rows.middleRows(used * q, q) = std::sqrt(w) * white;
-        bends.row(used) = weighed.bend(w) * off.transpose() * white;
+        if (curvature == Curvature::Observed)
+            bends.row(used).noalias() = weighed.bend(w) * off.transpose().lazyProduct(white);
         moments += w * mean.col(0) * mean.col(0).transpose();
         weights += w;
         ++used;
@@ -261,13 +264,12 @@ ImageTerms FitObjective::terms_of(const ImageView& view,
             add(details, W, detail, terms.moments.details[level], terms.weights[level]);
         });
     }
-    rows.conservativeResize(used * q, columns);
-    bends.conservativeResize(used, columns);
-    bends.col(0).setZero();
     MatrixXd H = MatrixXd::Zero(columns, columns);
-    H.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-    if (curvature == Curvature::Observed)
-        H.selfadjointView<Eigen::Lower>().rankUpdate(bends.transpose(), -1.0);
+    H.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(used * q).transpose());
+    if (curvature == Curvature::Observed) {
+        bends.col(0).setZero();
+        H.selfadjointView<Eigen::Lower>().rankUpdate(bends.topRows(used).transpose(), -1.0);
+    }
     H = H.selfadjointView<Eigen::Lower>();
     H /= point.dispersion;
     // The residual's column is the gradient; the pose is eliminated.

@@ -136,6 +136,8 @@ class FitObjective {
                                               const std::vector<ImageTerms>& terms) const;
 
     [[nodiscard]] FitModel model_at(const Eigen::VectorXd& x) const;
+    // An image's pose: the navigation's, corrected.
+    [[nodiscard]] Sled sled_at(const FitPoint& point, std::size_t image) const;
     [[nodiscard]] ImageView view(const FitPoint& point,
                                  const FitModel& model,
                                  std::size_t image) const;
