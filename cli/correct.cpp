@@ -49,15 +49,6 @@ struct CorrectCommandOptions {
     std::optional<double> electrons;
 };
 
-void print_scale(const LightAt& light) {
-    if (!light.rig_size) return;
-    say("  rig of {} x {} pixels scaled to {} x {}\n",
-        light.rig_size->width_px,
-        light.rig_size->height_px,
-        light.size.width_px,
-        light.size.height_px);
-}
-
 // One number if all channels have the same, as for a mono camera.
 std::string gain_words(const PerChannel& gain) {
     if (gain[0] == gain[1] && gain[1] == gain[2]) return fmt::format("{:.6g}", gain[0]);
@@ -76,7 +67,7 @@ void print_report(const CorrectionReport& report,
         run.kept,
         run.skipped.size());
     print_camera(survey);
-    print_scale(survey.light);
+    if (survey.light.rig_size) print_scale(*survey.light.rig_size, survey.light.size);
     print_relief(survey);
     std::string from;
     if (!report.gain.images.empty()) {

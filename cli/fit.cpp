@@ -30,8 +30,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace aphotic::cli {
@@ -51,9 +53,21 @@ struct FitCommandOptions {
     int blocks = kBlocksAcross;
 };
 
-FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const RunWatch& watch) {
-    if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
-    Survey survey = read_survey(options.input, options.folder, &rig);
+// The rig with the images' number of pixels, if they show its whole view, as `correct` takes it.
+RigText text_like(const CameraNumbers& images, const RigText& text) {
+    Camera camera = text.rig().camera;
+    const std::optional<PlaneSize> own = fit_to(images, camera);
+    if (!own || camera.width_px > own->width_px) return text;
+    RigText scaled = text;
+    scaled.set("camera.scale",
+               text.number("camera.scale").value_or(1.0) * camera.width_px / own->width_px);
+    return scaled;
+}
+
+FitSamples samples_for(const FitCommandOptions& options,
+                       Survey survey,
+                       const Rig& rig,
+                       const RunWatch& watch) {
     survey.navigation = navigation_of(options.input, survey.files, rig);
     survey.depth = depth_of(options.input, survey.navigation);
     const bool has_relief = survey.depth.has_value();
@@ -168,11 +182,17 @@ void print_verdict(const std::string& rig_name, const FitResult& result) {
             100.0 * rig_unevenness(result));
 }
 
-void print_result(const std::string& title,
+PlaneSize size_of(const Rig& rig) {
+    return {rig.camera.width_px, rig.camera.height_px};
+}
+
+void print_result(const Rig& rig,
+                  PlaneSize images,
                   const std::string& rig_name,
                   const FitResult& result,
                   const std::filesystem::path& folder) {
-    say("{}: {}\n", title, words_of(result));
+    say("{}: {}\n", rig.title, words_of(result));
+    if (images.width_px != rig.camera.width_px) print_scale(size_of(rig), images);
     for (const FittedNumber& one : result.numbers)
         if (!is_curve(one)) say("  {:<36} {}\n", one.key, with_error(one));
     if (std::ranges::count(result.numbers, "power", &FittedNumber::word) > 0)
@@ -194,8 +214,8 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_one_source(app);
     require_use(app);
     require_other_rig(options);
-    const RigText text = read_rig_text_as_set(options.input.rig);
-    const Rig rig = text.rig();
+    const RigText own = read_rig_text_as_set(options.input.rig);
+    const Rig rig = own.rig();
     naming(options.input.rig, [&] { require_bare_floor(rig); });
     check_plausible(rig, options.input.rig, options.input.strict);
     FitOptions fit_options = options.fit;
@@ -203,12 +223,20 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (is_given(app, "--free")) fit_options.free = options.free;
     if (is_given(app, "--vignetting")) fit_options.has_radial_vignetting = options.is_radial;
     fit_options.priors = priors_in(options.priors);
-    require_fit_options(text, fit_options);
+    require_fit_options(own, fit_options);
     const WorkFolder place(options.folder);
     const RunWatch watch = terminal_watch(options.input.strict);
-    const FitSamples samples = samples_for(options, rig, watch);
+    RigText text = own;
+    FitSamples samples;
+    if (options.maps.empty()) {
+        Survey survey = read_survey(options.input, options.folder, &rig);
+        text = text_like(survey.camera, own);
+        samples = samples_for(options, std::move(survey), text.rig(), watch);
+    } else {
+        samples = samples_of_maps(options.maps, rig.camera, options.blocks);
+    }
     const FitResult result = fit(text, samples, fit_options, watch);
-    write_fitted_rig(text, result, options.folder);
+    write_fitted_rig(own, result, options.folder);
     nlohmann::ordered_json json = to_json(result);
     if (!options.input.depth.place.empty()) json["depth"] = to_json(options.input.depth);
     write_text_file(options.folder / kFitNumbers, json_text(json));
@@ -216,7 +244,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (options.input.json) {
         say_text(json_text(json));
     } else {
-        print_result(rig.title, options.input.rig, result, options.folder);
+        print_result(rig, size_of(text.rig()), options.input.rig, result, options.folder);
     }
     if (options.input.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
     return status_of_skips(

@@ -64,6 +64,7 @@ struct SurveyCommandOptions {
 };
 
 struct MadeSurvey {
+    const std::string& rig_file;
     const SimulatedSurvey& survey;
     std::optional<ManifestModel> model;
 };
@@ -76,8 +77,27 @@ Json to_json(const MadeSurvey& made) {
     return json;
 }
 
+// The command that corrects it. None for a rig whose objects a correction refuses, or with settings
+// that it would have to repeat.
+void print_next(const MadeSurvey& made) {
+    const auto& [rig_file, survey, model] = made;
+    const auto is_set = [](const std::string& key) { return !key.starts_with("camera.scale="); };
+    const auto set = rig_settings();
+    if (!survey.rig.objects.empty() || !survey.rig.scene.empty()) return;
+    if (set && std::ranges::any_of(set->keys, is_set)) return;
+    say("Next:\n"
+        "  aphotic correct {} --rig {} --nav {} --bayer {} --black-level {:g} --white-level {:g} "
+        "-o corrected\n",
+        shell_word((survey.folder / "raw").string()),
+        shell_word(rig_file),
+        shell_word((survey.folder / "navigation-measured.txt").string()),
+        mosaic_name(survey.camera.mosaic),
+        survey.camera.black_dn,
+        survey.camera.white_dn);
+}
+
 void print(const MadeSurvey& made) {
-    const auto& [survey, model] = made;
+    const auto& [rig_file, survey, model] = made;
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
@@ -103,6 +123,7 @@ void print(const MadeSurvey& made) {
         if (is_asked) say("  {}: {}\n", (survey.folder / where).string(), what);
     }
     print_model_error(model);
+    print_next(made);
 }
 
 bool is_by_povray(const SurveyCommandOptions& options, const Rig& rig) {
@@ -359,7 +380,8 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
         write_ranges_of_scene(options, survey, *povray);
     finish_survey(survey);
     line.wipe();
-    show(MadeSurvey{.survey = survey, .model = model}, options.json);
+    show(MadeSurvey{.rig_file = options.planning.rig_file, .survey = survey, .model = model},
+         options.json);
     return kDone;
 }
 

@@ -339,6 +339,14 @@ void print_navigation(const Survey& survey) {
     say("  navigation: {}\n", words_of(*survey.navigation->notes()));
 }
 
+void print_scale(PlaneSize rig, PlaneSize images) {
+    say("  rig of {} x {} pixels scaled to {} x {}\n",
+        rig.width_px,
+        rig.height_px,
+        images.width_px,
+        images.height_px);
+}
+
 void print_relief(const Survey& survey) {
     if (!survey.depth) return;
     const DepthMaps& depth = *survey.depth;

@@ -96,6 +96,8 @@ using Settle = std::function<void()>;
 // nothing to report.
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
+// "rig of 1360 x 1024 pixels scaled to 136 x 102"
+void print_scale(PlaneSize rig, PlaneSize images);
 // "relief: depth maps of depth, along the axis"; "relief: reef.ply, east-north-up, by altitudes"
 void print_relief(const Survey& survey);
 

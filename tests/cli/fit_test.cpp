@@ -188,6 +188,26 @@ TEST_F(CommandFit, PromisesNoEvennessWhereAPatternStays) {
     for (const std::string& text : {out, page}) EXPECT_FALSE(has(text, "is expected to be even"));
 }
 
+// The rig keeps its own size, and what is fitted does not depend on it.
+TEST_F(CommandFit, TakesImagesOfAnotherScale) {
+    FitRigNumbers numbers = of_few_pixels();
+    numbers.width_px *= 2;
+    numbers.height_px *= 2;
+    FitRigNumbers weaker = numbers;
+    weaker.aft_power *= 0.8;
+    write_rigs(numbers, weaker);
+    fly("--images 20 --texture 0.005 --scale 0.5");
+    done(by_images(kCamera + "--blocks 12 --free power"),
+         "rig of 192 x 144 pixels scaled to 96 x 72\n");
+    const Rig truth = read_rig(path("truth.toml"));
+    const Rig fitted = read_rig(path("fitted/fitted.toml"));
+    EXPECT_EQ(fitted.camera.width_px, truth.camera.width_px);
+    const double ratio = fitted.strobes[0].power / fitted.strobes[1].power;
+    const double error = number("strobe.fore.power").at("error").get<double>();
+    EXPECT_NEAR(ratio, truth.strobes[0].power / truth.strobes[1].power, 2.0 * kSigmas * error);
+    EXPECT_LT(2.0 * kSigmas * error, 0.1);
+}
+
 // Without a navigation: depths along the axis are those of the true poses. Of one image the map is
 // missing, of another it is empty from row 24 on, but for what the plane around fills; and at one a
 // strobe was out.
