@@ -53,21 +53,24 @@ struct FitCommandOptions {
     int blocks = kBlocksAcross;
 };
 
-// The rig with the images' number of pixels, if they show its whole view, as `correct` takes it.
-RigText text_like(const CameraNumbers& images, const RigText& text) {
-    Camera camera = text.rig().camera;
-    const std::optional<PlaneSize> own = fit_to(images, camera);
-    if (!own || camera.width_px > own->width_px) return text;
-    RigText scaled = text;
-    scaled.set("camera.scale",
-               text.number("camera.scale").value_or(1.0) * camera.width_px / own->width_px);
-    return scaled;
+// The rig with the images' number of pixels, if they are smaller and show its whole view. The
+// size is counted from the rig's full one, as for `survey --scale`.
+RigText scaled_to_images(const CameraNumbers& images, const RigText& text) {
+    RigText full = text;
+    if (full.has("camera.scale")) full.erase("camera.scale");
+    Camera camera = full.rig().camera;
+    require_whole_view(images, text.rig().camera);
+    if (images.expected && images.expected->image.width_px == camera.width_px) return full;
+    const std::optional<PlaneSize> size = fit_to(images, camera);
+    if (!size || camera.width_px > size->width_px) return text;
+    full.set("camera.scale", static_cast<double>(camera.width_px) / size->width_px);
+    return full;
 }
 
-FitSamples samples_for(const FitCommandOptions& options,
-                       Survey survey,
-                       const Rig& rig,
-                       const RunWatch& watch) {
+FitSamples samples_of(Survey survey,
+                      const FitCommandOptions& options,
+                      const Rig& rig,
+                      const RunWatch& watch) {
     survey.navigation = navigation_of(options.input, survey.files, rig);
     survey.depth = depth_of(options.input, survey.navigation);
     const bool has_relief = survey.depth.has_value();
@@ -80,6 +83,20 @@ FitSamples samples_for(const FitCommandOptions& options,
         strobes_of_rig(rig, survey.navigation, survey.files, true, kVeilOfCorrection, has_relief);
     return samples_of_images(
         survey, rig, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
+}
+
+// The rig at the size of the data.
+struct FitData {
+    RigText rig;
+    FitSamples samples;
+};
+FitData data_for(const FitCommandOptions& options, const RigText& text, const RunWatch& watch) {
+    const Rig rig = text.rig();
+    if (!options.maps.empty())
+        return {text, samples_of_maps(options.maps, rig.camera, options.blocks)};
+    Survey survey = read_survey(options.input, options.folder, &rig);
+    const RigText scaled = scaled_to_images(survey.camera, text);
+    return {scaled, samples_of(std::move(survey), options, scaled.rig(), watch)};
 }
 
 bool is_given(const CLI::App& app, const std::string& option) {
@@ -214,8 +231,8 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_one_source(app);
     require_use(app);
     require_other_rig(options);
-    const RigText own = read_rig_text_as_set(options.input.rig);
-    const Rig rig = own.rig();
+    const RigText text = read_rig_text_as_set(options.input.rig);
+    const Rig rig = text.rig();
     naming(options.input.rig, [&] { require_bare_floor(rig); });
     check_plausible(rig, options.input.rig, options.input.strict);
     FitOptions fit_options = options.fit;
@@ -223,32 +240,28 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (is_given(app, "--free")) fit_options.free = options.free;
     if (is_given(app, "--vignetting")) fit_options.has_radial_vignetting = options.is_radial;
     fit_options.priors = priors_in(options.priors);
-    require_fit_options(own, fit_options);
+    require_fit_options(text, fit_options);
     const WorkFolder place(options.folder);
     const RunWatch watch = terminal_watch(options.input.strict);
-    RigText text = own;
-    FitSamples samples;
-    if (options.maps.empty()) {
-        Survey survey = read_survey(options.input, options.folder, &rig);
-        text = text_like(survey.camera, own);
-        samples = samples_for(options, std::move(survey), text.rig(), watch);
-    } else {
-        samples = samples_of_maps(options.maps, rig.camera, options.blocks);
-    }
-    const FitResult result = fit(text, samples, fit_options, watch);
-    write_fitted_rig(own, result, options.folder);
+    const FitData data = data_for(options, text, watch);
+    const FitResult result = fit(data.rig, data.samples, fit_options, watch);
+    write_fitted_rig(text, result, options.folder);
     nlohmann::ordered_json json = to_json(result);
+    const PlaneSize size = size_of(data.rig.rig());
+    if (size.width_px != rig.camera.width_px)
+        json["fitted_to"]["rig_scale"] = static_cast<double>(size.width_px) / rig.camera.width_px;
     if (!options.input.depth.place.empty()) json["depth"] = to_json(options.input.depth);
     write_text_file(options.folder / kFitNumbers, json_text(json));
-    write_fit_page(options.folder / kFitPage, text, samples, result);
+    write_fit_page(options.folder / kFitPage, data.rig, data.samples, result);
     if (options.input.json) {
         say_text(json_text(json));
     } else {
-        print_result(rig, size_of(text.rig()), options.input.rig, result, options.folder);
+        print_result(rig, size, options.input.rig, result, options.folder);
     }
     if (options.input.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
-    return status_of_skips(
-        samples.skipped.size(), samples.skipped.size() + samples.images.size(), options.input);
+    return status_of_skips(data.samples.skipped.size(),
+                           data.samples.skipped.size() + data.samples.images.size(),
+                           options.input);
 }
 
 }  // namespace

@@ -32,6 +32,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <tuple>
 
 namespace aphotic::cli {
@@ -63,8 +64,20 @@ struct SurveyCommandOptions {
     bool json = false;
 };
 
+fs::path scene_of(const SurveyCommandOptions& options, const Rig& rig) {
+    return options.planning.scene.empty() ? rig.scene : fs::path(options.planning.scene);
+}
+
+bool has_bare_floor(const SurveyCommandOptions& options, const Rig& rig) {
+    return scene_of(options, rig).empty() && rig.objects.empty();
+}
+
+bool is_by_povray(const SurveyCommandOptions& options, const Rig& rig) {
+    return options.by_povray || !has_bare_floor(options, rig);
+}
+
 struct MadeSurvey {
-    const std::string& rig_file;
+    const SurveyCommandOptions& options;
     const SimulatedSurvey& survey;
     std::optional<ManifestModel> model;
 };
@@ -77,27 +90,35 @@ Json to_json(const MadeSurvey& made) {
     return json;
 }
 
-// The command that corrects it. None for a rig whose objects a correction refuses, or with settings
-// that it would have to repeat.
+// The command that corrects it. None where a correction would take a scene or objects for flat
+// floor, or would have to repeat settings of the rig.
 void print_next(const MadeSurvey& made) {
-    const auto& [rig_file, survey, model] = made;
-    const auto is_set = [](const std::string& key) { return !key.starts_with("camera.scale="); };
-    const auto set = rig_settings();
-    if (!survey.rig.objects.empty() || !survey.rig.scene.empty()) return;
-    if (set && std::ranges::any_of(set->keys, is_set)) return;
+    const auto& [options, survey, model] = made;
+    if (!has_bare_floor(options, survey.rig)) return;
+    const ManifestSettings settings = rig_settings().value_or(ManifestSettings{});
+    std::string camera;
+    for (const std::string& key : settings.keys) {
+        constexpr std::string_view kChosen = "camera=";
+        if (key.starts_with(kChosen))
+            camera = " --camera " + shell_word(key.substr(kChosen.size()));
+        else if (!key.starts_with("camera.scale="))
+            return;
+    }
     say("Next:\n"
-        "  aphotic correct {} --rig {} --nav {} --bayer {} --black-level {:g} --white-level {:g} "
-        "-o corrected\n",
+        "  aphotic correct {} --rig {}{} --nav {} --bayer {} --black-level {} --white-level {} -o "
+        "{}\n",
         shell_word((survey.folder / "raw").string()),
-        shell_word(rig_file),
+        shell_word(options.planning.rig_file),
+        camera,
         shell_word((survey.folder / "navigation-measured.txt").string()),
         mosaic_name(survey.camera.mosaic),
         survey.camera.black_dn,
-        survey.camera.white_dn);
+        survey.camera.white_dn,
+        shell_word((survey.folder / "corrected").string()));
 }
 
 void print(const MadeSurvey& made) {
-    const auto& [rig_file, survey, model] = made;
+    const auto& [options, survey, model] = made;
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
     say("{}: {} in {}\n"
@@ -124,15 +145,6 @@ void print(const MadeSurvey& made) {
     }
     print_model_error(model);
     print_next(made);
-}
-
-bool is_by_povray(const SurveyCommandOptions& options, const Rig& rig) {
-    return options.by_povray || !options.planning.scene.empty() || !rig.scene.empty() ||
-           !rig.objects.empty();
-}
-
-fs::path scene_of(const SurveyCommandOptions& options, const Rig& rig) {
-    return options.planning.scene.empty() ? rig.scene : fs::path(options.planning.scene);
 }
 
 // The rig camera's values, replaced by the options'.
@@ -380,8 +392,7 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
         write_ranges_of_scene(options, survey, *povray);
     finish_survey(survey);
     line.wipe();
-    show(MadeSurvey{.rig_file = options.planning.rig_file, .survey = survey, .model = model},
-         options.json);
+    show(MadeSurvey{.options = options, .survey = survey, .model = model}, options.json);
     return kDone;
 }
 

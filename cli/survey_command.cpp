@@ -339,12 +339,12 @@ void print_navigation(const Survey& survey) {
     say("  navigation: {}\n", words_of(*survey.navigation->notes()));
 }
 
-void print_scale(PlaneSize rig, PlaneSize images) {
+void print_scale(PlaneSize of_rig, PlaneSize of_images) {
     say("  rig of {} x {} pixels scaled to {} x {}\n",
-        rig.width_px,
-        rig.height_px,
-        images.width_px,
-        images.height_px);
+        of_rig.width_px,
+        of_rig.height_px,
+        of_images.width_px,
+        of_images.height_px);
 }
 
 void print_relief(const Survey& survey) {

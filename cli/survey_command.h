@@ -97,7 +97,7 @@ using Settle = std::function<void()>;
 void print_camera(const Survey& survey);
 void print_navigation(const Survey& survey);
 // "rig of 1360 x 1024 pixels scaled to 136 x 102"
-void print_scale(PlaneSize rig, PlaneSize images);
+void print_scale(PlaneSize of_rig, PlaneSize of_images);
 // "relief: depth maps of depth, along the axis"; "relief: reef.ply, east-north-up, by altitudes"
 void print_relief(const Survey& survey);
 

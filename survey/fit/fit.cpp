@@ -54,42 +54,46 @@ FitPoint start_of(const FitObjective& objective,
     return start;
 }
 
-// The curvature of the images as they are, and with as many again in level flight at an altitude.
-struct MoreImages {
+// The curvature with as many images again, in level flight at an altitude.
+struct CurvatureAt {
     double altitude_m = 0.0;
     MatrixXd curvature;
 };
-std::vector<MoreImages> more_images(const FitObjective& objective,
-                                    const FitPoint& point,
-                                    const FitSamples& samples) {
+struct Curvatures {
+    MatrixXd now;
+    std::vector<CurvatureAt> with_more;
+};
+Curvatures curvatures_of(const FitObjective& objective,
+                         const FitPoint& point,
+                         const FitSamples& samples) {
     constexpr std::array kAltitudes{0.5, 0.7, 1.4, 2.0};  // of the mean
     const auto count = static_cast<double>(samples.images.size());
     double altitude_m = 0.0;
     for (const FitImage& image : samples.images) altitude_m += image.sled.altitude_m / count;
-    const MatrixXd A = objective.curvature_of(objective.terms_at(point, Curvature::Majorant));
-    std::vector<MoreImages> more{{.altitude_m = altitude_m, .curvature = A}};
+    Curvatures all{.now = objective.curvature_of(objective.terms_at(point, Curvature::Majorant)),
+                   .with_more = {}};
     for (const double times : kAltitudes) {
         const double there_m = times * altitude_m;
-        more.push_back(
-            {there_m, A + count * objective.information_at(point, {.altitude_m = there_m})});
+        const MatrixXd one = objective.information_at(point, {.altitude_m = there_m});
+        all.with_more.push_back({.altitude_m = there_m, .curvature = all.now + count * one});
     }
-    return more;
+    return all;
 }
 
-// Where they would improve a number most.
-std::optional<FlyAt> fly_at(const std::vector<MoreImages>& more, Index number, double error) {
+// The altitude at which more images would improve a number most.
+std::optional<FlyAt> fly_at(const Curvatures& curvatures, Index number, double error) {
     constexpr double kHelps = 0.7;
     const auto error_of = [&](const MatrixXd& A) {
         return std::sqrt(A.ldlt().solve(VectorXd::Unit(A.rows(), number))(number));
     };
-    const double now = error_of(more.front().curvature);
+    const double now = error_of(curvatures.now);
     std::optional<FlyAt> best;
     double least = kHelps * now;
-    for (const MoreImages& images : more) {
-        const double then = error_of(images.curvature);
+    for (const CurvatureAt& there : curvatures.with_more) {
+        const double then = error_of(there.curvature);
         if (!(then < least)) continue;
         least = then;
-        best = FlyAt{.altitude_m = images.altitude_m, .error = error * then / now};
+        best = FlyAt{.altitude_m = there.altitude_m, .error = error * then / now};
     }
     return best;
 }
@@ -228,12 +232,12 @@ double moved_from_rig(const RigText& text,
     const std::size_t apart = (point.pose.size() + kFewPoses - 1) / kFewPoses;
     for (std::size_t i = 0; i < point.pose.size(); i += apart) {
         const ImageView seen = objective.view(point, model, i);
-        const BlockLight rig =
+        const BlockLight by_rig =
             light.at(as_it_is, of_rig, objective.sled_at(point, i), {}, samples.images[i].planes);
         for (std::size_t k = 0; k < static_cast<std::size_t>(seen.rows.rows()); ++k) {
             if (!std::isfinite(seen.rows(static_cast<Index>(k), 0))) continue;
             const auto row = static_cast<Index>(k / channels * kChannels + k % channels);
-            const double difference = seen.light.logarithm(row) - rig.logarithm(row);
+            const double difference = seen.light.logarithm(row) - by_rig.logarithm(row);
             off[k % channels].push_back(std::isfinite(difference) ? difference
                                                                   : -std::log(kDarkestBlock));
         }
@@ -254,7 +258,7 @@ void add_numbers(const FitProblem& problem,
                  const MatrixXd& told,
                  const std::vector<double>& powers,
                  FitResult& result) {
-    std::vector<MoreImages> more;
+    std::optional<Curvatures> curvatures;  // if a number is not determined
     VectorXd units(told.rows());
     VectorXd of_state(told.rows());
     for (Index k = 0; k < told.rows(); ++k) {
@@ -273,8 +277,10 @@ void add_numbers(const FitProblem& problem,
                          .error = units(k) * error,
                          .spread = units(k) * number.spread,
                          .is_determined = is_of_curve || error < kDetermined * number.spread};
-        if (!one.is_determined && more.empty()) more = more_images(objective, point, samples);
-        if (!one.is_determined) one.fly_at = fly_at(more, k, one.error);
+        if (!one.is_determined) {
+            if (!curvatures) curvatures = curvatures_of(objective, point, samples);
+            one.fly_at = fly_at(*curvatures, k, one.error);
+        }
         result.numbers.push_back(std::move(one));
     }
     result.covariance = units.asDiagonal() * told * units.asDiagonal();

@@ -188,8 +188,8 @@ TEST_F(CommandFit, PromisesNoEvennessWhereAPatternStays) {
     for (const std::string& text : {out, page}) EXPECT_FALSE(has(text, "is expected to be even"));
 }
 
-// The rig keeps its own size, and what is fitted does not depend on it.
-TEST_F(CommandFit, TakesImagesOfAnotherScale) {
+// The rig keeps its own size.
+TEST_F(CommandFit, ScalesTheRigToSmallerImages) {
     FitRigNumbers numbers = of_few_pixels();
     numbers.width_px *= 2;
     numbers.height_px *= 2;
@@ -197,15 +197,27 @@ TEST_F(CommandFit, TakesImagesOfAnotherScale) {
     weaker.aft_power *= 0.8;
     write_rigs(numbers, weaker);
     fly("--images 20 --texture 0.005 --scale 0.5");
-    done(by_images(kCamera + "--blocks 12 --free power"),
-         "rig of 192 x 144 pixels scaled to 96 x 72\n");
+    const Arguments powers = kCamera + "--blocks 12 --free power";
+    done(by_images(powers), "rig of 192 x 144 pixels scaled to 96 x 72\n");
+    EXPECT_EQ(json_in("fitted/fit.json")["fitted_to"]["rig_scale"], 0.5);
     const Rig truth = read_rig(path("truth.toml"));
     const Rig fitted = read_rig(path("fitted/fitted.toml"));
     EXPECT_EQ(fitted.camera.width_px, truth.camera.width_px);
-    const double ratio = fitted.strobes[0].power / fitted.strobes[1].power;
+    const auto ratio_of = [](const Rig& rig) {
+        return rig.strobes[0].power / rig.strobes[1].power;
+    };
     const double error = number("strobe.fore.power").at("error").get<double>();
-    EXPECT_NEAR(ratio, truth.strobes[0].power / truth.strobes[1].power, 2.0 * kSigmas * error);
-    EXPECT_LT(2.0 * kSigmas * error, 0.1);
+    constexpr double kOfBoth = 2.0;  // what one has more, the other has less
+    EXPECT_NEAR(ratio_of(fitted), ratio_of(truth), kOfBoth * kSigmas * error);
+    EXPECT_GT(ratio_of(read_rig(path("rig.toml"))) - ratio_of(truth), kOfBoth * kSigmas * error);
+    // So does a rig that is smaller by its own scale.
+    done(by_images(powers + "--set camera.scale=0.25"), "fitted to 20 images");
+    // A part of the rig's own image is not its whole one, smaller.
+    done("survey truth.toml --images 2 -o whole");
+    refused(Arguments("fit rig.toml --images whole/raw --nav whole/navigation-measured.txt -o part "
+                      "--crop 0,0,96,72") +
+                kCamera,
+            "--crop: found 96 x 72 of files that have the rig's 192 x 144 pixels");
 }
 
 // Without a navigation: depths along the axis are those of the true poses. Of one image the map is
@@ -273,7 +285,8 @@ TEST_F(CommandFit, TakesTheFloorFromAMesh) {
     EXPECT_LT(error_deg, 0.5);
     const Json water = number("water.multiple");
     EXPECT_NEAR(water.at("value").get<double>(), 1.0, kSigmas * water.at("error").get<double>());
-    for (const Json& one : json_in("fitted/fit.json").at("images"))
+    const Json json = json_in("fitted/fit.json");
+    for (const Json& one : json.at("images"))
         EXPECT_EQ(one.at("altitude_off_m").get<double>(), 0.0);
 }
 

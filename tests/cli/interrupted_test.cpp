@@ -31,8 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-const int kInterruptions = campaign(16, 200);
 constexpr int kLanes = 4;
+// A few in each lane, or nothing is kept or said.
+const int kInterruptions = std::max(4 * kLanes, campaign(4 * kLanes, 200));
 
 enum class Target { Command, PovRay };
 struct Blow {

@@ -61,7 +61,7 @@ TEST_F(SurveyCommand, EndsWithTheCommandThatCorrectsIt) {
     const std::string next = "Next:\n  aphotic ";
     const std::string out = done("survey rig.toml --images 3 -o out", next).out;
     const std::string command = out.substr(out.find(next) + next.size());
-    EXPECT_TRUE(command.ends_with("-o corrected\n")) << command;
+    EXPECT_TRUE(command.ends_with("-o out/corrected\n")) << command;
     done(Arguments(command.substr(0, command.size() - 1)), "3 images corrected");
     // It would have to repeat this setting.
     const std::string set = done("survey rig.toml --images 1 -o set --set water.multiple=2").out;
