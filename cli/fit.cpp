@@ -15,6 +15,7 @@
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
+#include "rig/beam/round_profile.h"
 #include "survey/camera_station.h"
 #include "survey/fit/fit_json.h"
 #include "survey/fit/fit_page.h"
@@ -216,6 +217,14 @@ void print_result(const Rig& rig,
         say("powers keep the rig's sum: images do not determine it\n");
     for (const FittedNumber& one : result.numbers)
         if (!one.is_determined) say("{}\n", words_of(one));
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
+        const bool is_fitted_round = result.state.beams[result.state.beam_of[s]].is_round();
+        if (is_fitted_round && !is_round(strobe.beam))
+            say("beam '{}' of {} is not round, the fitted one is: --hold beam keeps the rig's\n",
+                strobe.beam.name,
+                strobe.name);
+    }
     if (!result.fixed.empty())
         say("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
     print_confounded(result.confounded);

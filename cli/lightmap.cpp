@@ -140,11 +140,12 @@ struct MadeLightmap {
     std::string file;
     std::optional<ManifestModel> model{};  // of the map with its veil
     WrittenLightmap written{};
+    std::optional<VeilShare> veil{};  // in the middle
     MapPromise promise{};
 };
 
 nlohmann::ordered_json to_json(const MadeLightmap& made) {
-    const auto& [options, rig, file, model, written, promise] = made;
+    const auto& [options, rig, file, model, written, veil, promise] = made;
     nlohmann::ordered_json json{{"title", rig.title},
                                 {"rig_sha256", rig.digest},
                                 {"file", file},
@@ -155,7 +156,7 @@ nlohmann::ordered_json to_json(const MadeLightmap& made) {
                                 {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
                                 {"channels", written.channels},
                                 {"peak", written.peaks},
-                                {"veil_in_the_middle", veil_share_of(written.map)},
+                                {"veil_in_the_middle", veil.value_or(VeilShare{})},
                                 {"normalised", options.normalised},
                                 {"error", options.map.error},
                                 {"promise",
@@ -174,7 +175,7 @@ nlohmann::ordered_json to_json(const MadeLightmap& made) {
 
 void print(const MadeLightmap& made) {
     constexpr double kMilli = 1e3;
-    const auto& [options, rig, file, model, written, promise] = made;
+    const auto& [options, rig, file, model, written, veil, promise] = made;
     say("{}: {} x {} pixels in {:.0f} ms,\n"
         "  {};\n"
         "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
@@ -194,7 +195,7 @@ void print(const MadeLightmap& made) {
         written.peaks[1],
         written.peaks[2],
         options.normalised ? ", each channel divided by its own" : "");
-    if (!written.map.veil.empty()) say("  {}\n", veil_in_words(veil_share_of(written.map)));
+    if (veil) say("  {}\n", veil_in_words(*veil));
     say("  {}  {}\n", file, counted(written.channels.size(), "channel"));
 }
 
@@ -228,6 +229,7 @@ void write_map(MadeLightmap& made) {
                                    .map = options.map,
                                    .version = APHOTIC_VERSION,
                                    .model = made.model});
+    if (!made.written.map.veil.empty()) made.veil = veil_share_of(made.written.map);
     made.promise = map_promise(made.rig, options.map);
 }
 
@@ -307,7 +309,7 @@ ExitStatus make_maps(const LightmapCommandOptions& options, const Rig& rig) {
         for (std::size_t i = 0; i < made.maps.size(); ++i) {
             line.show("mapping", static_cast<double>(i) / static_cast<double>(made.maps.size()));
             write_map(made.maps[i]);
-            made.maps[i].written.map.samples = {};  // hundreds of maps would not fit in memory
+            made.maps[i].written.map = {};  // hundreds of maps would not fit in memory
         }
     });
     show(made, options.json);

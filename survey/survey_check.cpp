@@ -49,6 +49,8 @@ constexpr double kLikeAltitudes = 0.5;
 // Fewer than for other lines: sleds whose tilts are all so small are rare, and the floors' own
 // patterns leave 16 images in degrees an error of a fourth.
 constexpr double kErrorsOfAttitude = 3.0;
+// Of 16 images in two groups, floors leave a step of one stop an error of a fifth.
+constexpr double kErrorsOfExposure = 3.0;
 
 constexpr double kOtherUnit = 2.5;
 constexpr double kEncoded = 1.0 / 2.2;
@@ -227,7 +229,7 @@ double ratio_of(double a, double b) {
     return std::max(a, b) / std::min(a, b);
 }
 
-void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
+bool check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
     const bool is_green_beside = channel_at(mosaic, 1, 0) == static_cast<int>(kGreenChannel);
     std::vector<float> greens;
     std::vector<float> others;
@@ -241,10 +243,10 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
         greens.push_back(static_cast<float>(is_green_beside ? beside : across));
         others.push_back(static_cast<float>(is_green_beside ? across : beside));
     }
-    if (greens.empty()) return;
+    if (greens.empty()) return false;
     const double green = double{upper_median(greens)} - 1.0;
     const double other = double{upper_median(others)} - 1.0;
-    if (green < kGreenSites || other > kOtherSites * green) return;
+    if (green < kGreenSites || other > kOtherSites * green) return false;
     found.push_back({.about = "bayer",
                      .what = fmt::format("the two sites that {} makes green differ by {:.0f} %, "
                                          "the other two by {:.1f} %: the pattern is {}",
@@ -252,6 +254,7 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
                                          kPerCent * green,
                                          kPerCent * other,
                                          is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
+    return true;
 }
 
 std::string range_of(std::span<const ImageLook> looks) {
@@ -443,6 +446,26 @@ Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
                   .error = std::sqrt((ones - rows * fit).squaredNorm() / freedom * inverse(0, 0))};
     }
     return offset;
+}
+
+bool check_below_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    std::vector<float> lowest;
+    for (const ImageLook& look : looks) {
+        double share = 0.0;
+        for (std::size_t c = 0; c < kChannels; ++c)
+            if (look.frame.median[c] > 0.0)
+                share = std::min(share, look.frame.darkest[c] / look.frame.median[c]);
+        lowest.push_back(static_cast<float>(share));
+    }
+    if (lowest.empty()) return false;
+    const double middle = double{upper_median(lowest)};
+    if (middle > -kOffset) return false;
+    found.push_back({.about = "black-level",
+                     .what = fmt::format("the darkest part of most images is below the black "
+                                         "level, by {:.2g} of their median above it, and light is "
+                                         "not negative: the black level is too high",
+                                         -middle)});
+    return true;
 }
 
 bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
@@ -686,19 +709,20 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
                                   std::optional<double> rig_altitude_m) {
     std::vector<Suspicion> found;
     check_white(looks, found);
-    if (is_bayer(mosaic)) check_greens(looks, mosaic, found);
+    const bool is_pattern_wrong = is_bayer(mosaic) && check_greens(looks, mosaic, found);
     const std::vector<ImageLook> lit_looks = lit(looks);
     const std::size_t before = found.size();
     const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);
     const Powers powers = powers_of(lit_looks, has_line);
     // The first problem found explains the symptoms of the others.
-    if (!check_unit(looks, rig_altitude_m, found) && !check_black(lit_looks, found) &&
-        !check_encoding(lit_looks, powers, found) && !check_corrected(powers, found)) {
+    if (!check_unit(looks, rig_altitude_m, found) && !check_below_black(looks, found) &&
+        !check_black(lit_looks, found) && !check_encoding(lit_looks, powers, found) &&
+        !check_corrected(powers, found)) {
         if (has_line) check_altitude(lit_looks, found);
         check_gains(lit_looks, found);
     }
-    // At wrong altitudes colours vary wrongly, too.
-    if (has_line && found.size() == before) {
+    // At wrong altitudes colours vary wrongly, too; and with greens for red or blue.
+    if (has_line && found.size() == before && !is_pattern_wrong) {
         if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);
     }
     check_attitude(looks, found);
@@ -713,16 +737,30 @@ nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions) {
     return json;
 }
 
-std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks) {
+std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks, ExposureBy by) {
+    if (is_told_by_exif(by)) return std::nullopt;
     constexpr double kOff = 0.2;
+    const bool has_levels = by == ExposureBy::Model;
     std::vector<double> exposures;
     std::vector<double> levels;
     for (const ImageLook& look : looks) {
+        const double quotient = look.quotient[kGreenChannel];
         if (!look.stated_exposure || !(*look.stated_exposure > 0.0)) continue;
+        if (!has_levels && !(quotient > 0.0)) continue;
         exposures.push_back(std::log(*look.stated_exposure));
-        levels.push_back(look.level);
+        levels.push_back(has_levels ? look.level : std::log(quotient));
     }
     const Line line = line_through(exposures, levels);
+    if (!has_levels) {
+        if (!is_known(line) || line.slope < 0.5 || line.slope < kErrorsOfExposure * line.error)
+            return std::nullopt;
+        return Suspicion{.about = "exposure",
+                         .what = fmt::format("the Exif exposures vary {:.3g}-fold, and brightness "
+                                             "over that of the light goes as their power {:.2g}: "
+                                             "--exposure exif takes them into account",
+                                             fold_of(exposures),
+                                             line.slope)};
+    }
     if (std::abs(line.slope - 1.0) < std::max(kOff, kStandardErrors * line.error))
         return std::nullopt;
     return Suspicion{.about = "exposure",

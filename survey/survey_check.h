@@ -28,7 +28,9 @@
 //              darkest block, q the median of all blocks, and rho the map's own d/q. Over images
 //              and channels d = b + phi_c rho (q - b), with a factor for each channel's floor.
 //              Reported if b is over five standard errors and over kOffset of the largest q, q - b
-//              varies kVaried-fold, and b is most of the least d, which it cannot exceed.
+//              varies kVaried-fold, and b is most of the least d, which it cannot exceed. Or it is
+//              too high: light is not negative, so if d < -kOffset q in some channel of most
+//              images, part of them is below it by more than noise, which blocks average out.
 // map          Light that has travelled a different path has a different colour: reported if the
 //              gains of two channels differ by over kGains; as "altitude" if images have one.
 // attitude     Tilts that are all under kSmall_deg may be radians. If maps for tilts in radians
@@ -49,6 +51,7 @@
 
 #include "survey/correction.h"
 #include "survey/dropouts.h"
+#include "survey/images/camera_numbers.h"
 #include "survey/images/raw_image.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -155,8 +158,10 @@ struct Suspicion {
 [[nodiscard]] std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks,
                                                     Mosaic mosaic);
 
-// For images with a level each: if it contradicts the exposures in their Exif.
-[[nodiscard]] std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks);
+// If the exposures in the images' Exif contradict the levels that the images have each; or if these
+// are not to be used, and their brightness follows them all the same.
+[[nodiscard]] std::optional<Suspicion> exposure_doubt(std::span<const ImageLook> looks,
+                                                      ExposureBy by);
 
 // Why a line through images with altitudes can show none of these; or empty.
 [[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);

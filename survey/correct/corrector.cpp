@@ -317,10 +317,8 @@ class ModelCorrector : public Corrector {
             suspicions(look.images, mosaic_of(look.images), survey_.light.rig_altitude_m),
             std::back_inserter(report.looks_wrong));
         if (look.doubt) report.looks_wrong.push_back(*look.doubt);
-        if (survey_.camera.exposure_by == ExposureBy::Model) {
-            if (const auto doubt = exposure_doubt(look.images))
-                report.looks_wrong.push_back(*doubt);
-        }
+        if (const auto doubt = exposure_doubt(look.images, survey_.camera.exposure_by))
+            report.looks_wrong.push_back(*doubt);
         report.pattern = look.pattern;
         if (const auto doubt = pattern_doubt(look.pattern, has_rig(), report.looks_wrong))
             report.looks_wrong.push_back(*doubt);

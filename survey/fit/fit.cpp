@@ -275,7 +275,8 @@ void add_numbers(const FitProblem& problem,
                          .start = number.shown(0.0),
                          .value = scale * number.shown(point.x(k)),
                          .error = units(k) * error,
-                         .spread = units(k) * number.spread,
+                         .spread = number.shown_slope(0.0) * number.spread,
+                         .is_log = number.is_log,
                          .is_determined = is_of_curve || error < kDetermined * number.spread};
         if (!one.is_determined) {
             if (!curvatures) curvatures = curvatures_of(objective, point, samples);

@@ -44,7 +44,8 @@ struct FittedNumber {
     double start = 0.0;
     double value = 0.0;
     double error = 0.0;
-    double spread = 0.0;  // the prior's
+    double spread = 0.0;  // the prior's, at the start
+    bool is_log = false;  // its prior is of the logarithm
     bool is_determined = true;
     std::optional<FlyAt> fly_at{};  // for an undetermined one
 };

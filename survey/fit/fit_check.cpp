@@ -56,7 +56,8 @@ std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& re
                                      pattern.by_chance)});
     }
     for (const FittedNumber& one : result.numbers) {
-        const double off = std::abs(one.value - one.start);
+        const double off = one.is_log ? one.start * std::abs(std::log(one.value / one.start))
+                                      : std::abs(one.value - one.start);
         if (is_curve(one) || off <= kFarthest * one.spread) continue;
         found.push_back(
             {"range",

@@ -5,6 +5,7 @@
 #include "support/refusal.h"
 #include "tests/support/abandoned_file.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/thread_sanitizer.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -34,12 +35,6 @@
 
 namespace aphotic::atomic_file_test {
 namespace {
-
-#ifdef __has_feature
-constexpr bool kHasThreadSanitizer = __has_feature(thread_sanitizer);
-#else
-constexpr bool kHasThreadSanitizer = false;
-#endif
 
 // What the calls that follow were made on, in their order, and what fsync fails with. Threads call
 // them, too.
@@ -280,12 +275,6 @@ TEST(AtomicFile, MayHaveTheLongestName) {
 
 // Struck while four threads begin, write and commit files, as correct does: whole ones stay alone.
 TEST(AtomicFile, OfAProcessThatASignalEndsIsRemoved) {
-    // ThreadSanitizer blocks signals in handlers: the process ends by the status that shells use.
-    const auto is_ended_by = [](int status, int signal) {
-        constexpr int kShellsOffset = 128;
-        return kHasThreadSanitizer ? WEXITSTATUS(status) == kShellsOffset + signal
-                                   : WIFSIGNALED(status) && WTERMSIG(status) == signal;
-    };
     constexpr int kThreads = 4;
     for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGTERM, SIGINT, SIGHUP}) {
         const TempFolder folder;

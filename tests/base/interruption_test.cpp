@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "plugin/scratch_folder.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/thread_sanitizer.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -91,7 +92,7 @@ TEST(Interruption, WaitsUntilATextIsWritten) {
         ::kill(child, SIGTERM);
         int status = 0;
         ::waitpid(child, &status, 0);
-        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+        EXPECT_TRUE(is_ended_by(status, SIGTERM)) << status;
         const std::filesystem::directory_iterator left(folder.path());
         EXPECT_EQ(std::distance(begin(left), end(left)), 1) << "files, the whole one included";
     }

@@ -52,6 +52,11 @@ TEST_F(Validate, TellsHowMuchIsVeil) {
         EXPECT_NEAR(traced[c].get<double>() / mapped[c].get<double>(), 1.0, kOfBoth) << c;
     }
     EXPECT_TRUE(has(text_of("out/report.html"), "Veil in the middle"));
+    // The same among maps of several altitudes.
+    const auto maps =
+        json_by("lightmap rig.toml -o maps --altitude 2,2.5 --json --model-tolerance 1")["maps"];
+    EXPECT_EQ(maps[0]["altitude_m"], 2.0);
+    EXPECT_EQ(maps[0]["veil_in_the_middle"], mapped);
 }
 
 // Wavelengths that share a frame behind a port may be shifted, and their bound is the wider for it.

@@ -457,6 +457,8 @@ TEST(SurveyCheck, ABlackLevelThatIsLeftOutIsTold) {
     expect_told("240 of 4095", {.black = 240.0}, black);
     expect_told("64, narrow beams", {.fall_off = 10.0, .black = 64.0}, black);
     expect_told("64, automatic exposure", {.exposure = 0.3, .black = 64.0}, black);
+    expect_told("36 too high", {.black = -36.0}, black);
+    expect_told("64 too high", {.black = -64.0}, black);
 }
 
 TEST(SurveyCheck, GammaEncodedImagesAreTold) {
@@ -535,13 +537,33 @@ TEST(SurveyCheck, ExposuresThatLevelsDoNotFollowAreTold) {
         looks[i].stated_exposure = 8.0 / static_cast<double>(1U << i % 4);
         looks[i].level = -std::log(kFactors.at(i % 4));
     }
-    const auto doubt = exposure_doubt(looks);
+    const auto doubt = exposure_doubt(looks, ExposureBy::Model);
     ASSERT_TRUE(doubt.has_value());
     EXPECT_TRUE(has(doubt->what, "vary 8-fold, but the images' levels go as their power 0.3"));
     for (ImageLook& look : looks) look.level = std::log(*look.stated_exposure);
-    EXPECT_FALSE(exposure_doubt(looks).has_value());
+    EXPECT_FALSE(exposure_doubt(looks, ExposureBy::Model).has_value());
     for (ImageLook& look : looks) look.stated_exposure.reset();
-    EXPECT_FALSE(exposure_doubt(looks).has_value());
+    EXPECT_FALSE(exposure_doubt(looks, ExposureBy::Model).has_value());
+}
+
+// Floors that vary by 20 %; every other image is of another dive, with twice the exposure. A
+// shutter does not change the light of a flash.
+TEST(SurveyCheck, ExposuresThatAreNotUsedAreTold) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> floor(0.0, 0.2);
+    std::vector<ImageLook> looks(16);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        looks[i].stated_exposure = i % 2 == 0 ? 4.0 : 8.0;
+        looks[i].quotient.fill(*looks[i].stated_exposure * std::exp(floor(random)));
+    }
+    const auto doubt = exposure_doubt(looks, ExposureBy::Nothing);
+    ASSERT_TRUE(doubt.has_value());
+    EXPECT_TRUE(has(doubt->what, "the Exif exposures vary 2-fold"));
+    EXPECT_TRUE(has(doubt->what, "--exposure exif"));
+    EXPECT_FALSE(exposure_doubt(looks, ExposureBy::Exif).has_value());
+    for (ImageLook& look : looks)
+        for (double& quotient : look.quotient) quotient /= *look.stated_exposure;
+    EXPECT_FALSE(exposure_doubt(looks, ExposureBy::Nothing).has_value());
 }
 
 }  // namespace

@@ -57,6 +57,14 @@ TEST(FitCheck, NumbersThatAreFarFromTheRigs) {
     EXPECT_EQ(fitted.signs(), "");
     multiple.value = 1.0 - kMore * kFarthest * multiple.spread;
     EXPECT_EQ(fitted.signs(), "range\n");
+    // Of a logarithm, as far down is as likely as as far up.
+    multiple.is_log = true;
+    for (const double way : {-1.0, 1.0}) {
+        multiple.value = std::exp(way * kLess * kFarthest * multiple.spread);
+        EXPECT_EQ(fitted.signs(), "");
+        multiple.value = std::exp(way * kMore * kFarthest * multiple.spread);
+        EXPECT_EQ(fitted.signs(), "range\n");
+    }
 }
 
 TEST(FittedNumber, HasTheDigitsThatItsErrorEarns) {
