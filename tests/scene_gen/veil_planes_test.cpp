@@ -165,7 +165,8 @@ TEST(VeilPlanes, TakeAsManyThreadsAsTheyMay) {
         return threads_begun.load();
     };
     EXPECT_EQ(begun_by(1), 0);
-    if (!kHasThreadSanitizer) EXPECT_GT(begun_by(2), 0);
+    if (kHasThreadSanitizer) return;  // whose threads are not counted
+    EXPECT_GT(begun_by(2), 0);
 }
 
 }  // namespace
