@@ -457,8 +457,13 @@ TEST(SurveyCheck, ABlackLevelThatIsLeftOutIsTold) {
     expect_told("240 of 4095", {.black = 240.0}, black);
     expect_told("64, narrow beams", {.fall_off = 10.0, .black = 64.0}, black);
     expect_told("64, automatic exposure", {.exposure = 0.3, .black = 64.0}, black);
-    expect_told("36 too high", {.black = -36.0}, black);
-    expect_told("64 too high", {.black = -64.0}, black);
+}
+
+// Where there is a dark part.
+TEST(SurveyCheck, ABlackLevelThatIsTooHighIsTold) {
+    const std::vector<std::string> black{"black-level"};
+    expect_told("36 too high", {.fall_off = 10.0, .black = -36.0}, black);
+    expect_told("64 too high", {.fall_off = 10.0, .black = -64.0}, black);
 }
 
 TEST(SurveyCheck, GammaEncodedImagesAreTold) {
