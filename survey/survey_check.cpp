@@ -450,21 +450,18 @@ Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
 
 bool check_below_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
     std::vector<float> lowest;
+    double brightest = 0.0;
     for (const ImageLook& look : looks) {
-        double share = 0.0;
-        for (std::size_t c = 0; c < kChannels; ++c)
-            if (look.frame.median[c] > 0.0)
-                share = std::min(share, look.frame.darkest[c] / look.frame.median[c]);
-        lowest.push_back(static_cast<float>(share));
+        lowest.push_back(static_cast<float>(std::ranges::min(look.frame.darkest)));
+        brightest = std::max(brightest, std::ranges::max(look.frame.median));
     }
     if (lowest.empty()) return false;
-    const double middle = double{upper_median(lowest)};
-    if (middle > -kOffset) return false;
+    const double below = -double{upper_median(lowest)};
+    if (!(brightest > 0.0) || below < kOffset * brightest) return false;
     found.push_back({.about = "black-level",
-                     .what = fmt::format("the darkest part of most images is below the black "
-                                         "level, by {:.2g} of their median above it, and light is "
-                                         "not negative: the black level is too high",
-                                         -middle)});
+                     .what = fmt::format("the darkest part of most images is {:.3g} below the "
+                                         "black level, and light is not negative: it is too high",
+                                         below)});
     return true;
 }
 

@@ -29,8 +29,8 @@
 //              and channels d = b + phi_c rho (q - b), with a factor for each channel's floor.
 //              Reported if b is over five standard errors and over kOffset of the largest q, q - b
 //              varies kVaried-fold, and b is most of the least d, which it cannot exceed. Or it is
-//              too high: light is not negative, so if d < -kOffset q in some channel of most
-//              images, part of them is below it by more than noise, which blocks average out.
+//              too high: light is not negative, and blocks average noise out. Reported if in most
+//              images some d is below 0 by kOffset of the largest q.
 // map          Light that has travelled a different path has a different colour: reported if the
 //              gains of two channels differ by over kGains; as "altitude" if images have one.
 // attitude     Tilts that are all under kSmall_deg may be radians. If maps for tilts in radians
