@@ -175,6 +175,12 @@ TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
         EXPECT_EQ(told_of(changed(seed), Mosaic::Bggr), kBayer) << seed;
     }
     EXPECT_TRUE(has(suspicions(changed(1), Mosaic::Bggr)[0].what, "--bayer RGGB corrects this"));
+    // Where even the greens are wrong, another order of red and blue is no remedy.
+    std::vector<ImageLook> no_greens = changed(1);
+    for (ImageLook& look : no_greens) look.sites = {{100.0, 180.0, 182.0, 60.0}};
+    const std::vector<Suspicion> told = suspicions(no_greens, Mosaic::Grbg);
+    ASSERT_EQ(told.size(), 1);
+    EXPECT_TRUE(has(told[0].what, "the pattern is RGGB or BGGR"));
 }
 
 // Poses of other images turn brightness and colours alike, and no pattern puts them right.
