@@ -360,7 +360,8 @@ TEST_F(CommandFit, FindsBeamsAndLensesOfEveryKind) {
              {"vignetting", smooth, of_vignetting("radial = [-0.3, 0.0, 0.0]")}}) {
         SCOPED_TRACE(options);
         write_rigs(truth, rig);
-        done(by_maps("--hold tint --blocks 24 --free " + options));
+        const std::string out = done(by_maps("--hold tint --blocks 24 --free " + options)).out;
+        EXPECT_FALSE(has(out, "is not round"));
         EXPECT_GT(unevenness("rig.toml"), kAtFirst);
         EXPECT_LT(unevenness("fitted/fitted.toml"), kByMaps);
         // No beam is left that no strobe has.
@@ -370,6 +371,10 @@ TEST_F(CommandFit, FindsBeamsAndLensesOfEveryKind) {
         EXPECT_EQ(has(fitted, "radial"), has(rig + options, "radial")) << fitted;
         fs::remove_all(path("fitted"));
     }
+    // A table is round.
+    write_rigs(of_lens("50.0"), of_lens("50.0"));
+    done(by_maps("--blocks 12 --free beam"),
+         "beam 'smooth' of fore is not round, the fitted one is: --hold beam keeps the rig's\n");
 }
 
 // Together as much as before, shared out as the truth has it.
