@@ -460,7 +460,7 @@ bool check_below_black(std::span<const ImageLook> looks, std::vector<Suspicion>&
     if (!(brightest > 0.0) || below < kOffset * brightest) return false;
     found.push_back({.about = "black-level",
                      .what = fmt::format("the darkest part of most images is {:.3g} below the "
-                                         "black level, and light is not negative: it is too high",
+                                         "black level, which is too high: light is not negative",
                                          below)});
     return true;
 }
